@@ -1,0 +1,45 @@
+# What a build may choose, and the compile settings that every target shares.
+
+option(VMECH_BUILD_APPS "build the vmech command" ON)
+option(VMECH_BUILD_TESTS "build the tests and benchmarks" ${PROJECT_IS_TOP_LEVEL})
+option(VMECH_BUILD_NOTEBOOKS "build the chapters of notebooks_cpp" ${PROJECT_IS_TOP_LEVEL})
+option(VMECH_WARNINGS_AS_ERRORS "treat warnings as errors" OFF)
+option(VMECH_FORBID_MALLOC "make Eigen assert on allocations where they are forbidden" OFF)
+set(VMECH_SANITIZE "" CACHE STRING "sanitizers, for example address,undefined")
+set(VMECH_ARCH "x86-64-v3" CACHE STRING "-march of the library; empty for the compiler's own choice")
+
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+
+find_program(VMECH_CCACHE ccache)
+if(VMECH_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${VMECH_CCACHE})
+endif()
+
+# vmech_settings: what every source of this tree is compiled with; never exported.
+add_library(vmech_settings INTERFACE)
+target_compile_options(vmech_settings INTERFACE -Wall -Wextra -Wpedantic -Wnon-virtual-dtor)
+if(VMECH_WARNINGS_AS_ERRORS)
+  target_compile_options(vmech_settings INTERFACE -Werror)
+endif()
+if(VMECH_SANITIZE)
+  target_compile_options(vmech_settings INTERFACE -fsanitize=${VMECH_SANITIZE}
+                         -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(vmech_settings INTERFACE -fsanitize=${VMECH_SANITIZE})
+endif()
+if(VMECH_FORBID_MALLOC)
+  target_compile_definitions(vmech_settings INTERFACE EIGEN_RUNTIME_NO_MALLOC)
+endif()
+
+# vmech_kernel_settings: the arithmetic of the library itself. The alignment that Eigen assumes is
+# pinned to 16 bytes (VmechModule.cmake), so that code compiled with and without AVX can be mixed.
+add_library(vmech_kernel_settings INTERFACE)
+if(VMECH_ARCH AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  target_compile_options(vmech_kernel_settings INTERFACE -march=${VMECH_ARCH})
+endif()
+target_compile_options(vmech_kernel_settings INTERFACE -fno-math-errno -fno-trapping-math)

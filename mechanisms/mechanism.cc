@@ -1,0 +1,101 @@
+#include "vmech/mechanisms/mechanism.h"
+
+#include <stdexcept>
+
+namespace vmech {
+namespace {
+
+struct TypeInfo {
+  std::string_view name;
+  int freedoms;
+};
+
+constexpr TypeInfo kTypes[] = {{"revolute", 1},  {"prismatic", 1}, {"cylindrical", 2},
+                               {"screw", 1},     {"universal", 2}, {"spherical", 3},
+                               {"planar", 3},    {"weld", 0}};
+
+template <typename Item>
+int FindByName(const std::vector<Item>& items, std::string_view name) {
+  for (size_t i = 0; i < items.size(); ++i) {
+    if (items[i].name == name) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+}  // namespace
+
+std::string_view NameOf(JointType type) { return kTypes[static_cast<int>(type)].name; }
+
+int FreedomsOf(JointType type) { return kTypes[static_cast<int>(type)].freedoms; }
+
+int CoordinatesOf(JointType type) {
+  return type == JointType::kSpherical ? 4 : FreedomsOf(type);
+}
+
+int FindLink(const Mechanism& mechanism, std::string_view name) {
+  return FindByName(mechanism.links, name);
+}
+
+int FindJoint(const Mechanism& mechanism, std::string_view name) {
+  return FindByName(mechanism.joints, name);
+}
+
+int FindGrasp(const Mechanism& mechanism, std::string_view name) {
+  return FindByName(mechanism.grasps, name);
+}
+
+Matrix3d AxesFromZX(const Vector3d& z, const Vector3d& x) {
+  constexpr double kParallel = 1e-6;  // sine of the angle below which x says nothing about the frame
+  if (!(z.norm() > 0)) throw std::invalid_argument("the z axis has no length");
+  const Vector3d z_unit = z.normalized();
+  const Vector3d x_across = x - z_unit * z_unit.dot(x);
+  if (!(x_across.norm() > kParallel * x.norm())) {
+    throw std::invalid_argument("the x axis is parallel to the z axis, or has no length");
+  }
+  Matrix3d R;
+  R.col(0) = x_across.normalized();
+  R.col(1) = z_unit.cross(R.col(0));
+  R.col(2) = z_unit;
+  return R;
+}
+
+double CharacteristicLength(const Mechanism& mechanism) {
+  double sum = 0;
+  int count = 0;
+  for (size_t i = 0; i < mechanism.links.size(); ++i) {
+    if (static_cast<int>(i) == mechanism.ground) continue;
+    const Link& link = mechanism.links[i];
+    std::vector<Vector3d> points{link.mass_properties.p_LoLcm};
+    for (const Anchor& anchor : link.anchors) points.push_back(anchor.X_LA.p);
+    for (size_t a = 0; a < points.size(); ++a) {
+      for (size_t b = 0; b < a; ++b) {
+        sum += (points[a] - points[b]).norm();
+        ++count;
+      }
+    }
+  }
+  return sum > 0 ? sum / count : 1.0;
+}
+
+std::vector<double> ZeroCoordinates(JointType type) {
+  std::vector<double> zero(CoordinatesOf(type), 0.0);
+  if (type == JointType::kSpherical) zero[0] = 1;
+  return zero;
+}
+
+Joint MakeJoint(std::string name, JointType type, AnchorId first, AnchorId second) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const int f = FreedomsOf(type);
+  Joint joint;
+  joint.name = std::move(name);
+  joint.type = type;
+  joint.first = first;
+  joint.second = second;
+  joint.start = ZeroCoordinates(type);
+  joint.lower.assign(f, -kInfinity);
+  joint.upper.assign(f, kInfinity);
+  joint.passive.assign(f, Passive{});
+  return joint;
+}
+
+}  // namespace vmech

@@ -1,0 +1,137 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vmech/mechanisms/pose.h"
+
+namespace vmech {
+
+/// What a mechanism is: links that meet in joints. Everything is in SI units and radians; the
+/// readers convert at the door. Paper section 3.
+
+/// Mass, centre of gravity and inertia of a link, in the link's drawing frame L.
+struct MassProperties {
+  double mass = 0;                                     ///< [kg]
+  Vector3d p_LoLcm = Vector3d::Zero();                 ///< centre of gravity [m]
+  Matrix3d I_Lcm = Matrix3d::Zero();                   ///< about the centre of gravity, axes of L [kg m^2]
+};
+
+/// A frame on a link at which joints are made: z is the axis of rotation or translation, the
+/// origin is the joint centre (paper section 3).
+struct Anchor {
+  std::string name;
+  Posed X_LA;  ///< pose in the link's drawing frame
+};
+
+struct Link {
+  std::string name;
+  MassProperties mass_properties;
+  std::vector<Anchor> anchors;
+};
+
+/// One anchor of one link, by index.
+struct AnchorId {
+  int link = -1;
+  int anchor = -1;
+};
+
+enum class JointType {
+  kRevolute,     ///< about z
+  kPrismatic,    ///< along z
+  kCylindrical,  ///< along z, about z (independent)
+  kScrew,        ///< about z, with `pitch` along z
+  kUniversal,    ///< about x of the first anchor, then about y of the second
+  kSpherical,    ///< all three rotations
+  kPlanar,       ///< along x and y of the first anchor, then about z
+  kWeld,         ///< none
+};
+
+/// The word used in files, "revolute".
+std::string_view NameOf(JointType type);
+/// Freedoms of a joint, f = 0..3.
+int FreedomsOf(JointType type);
+/// Values in `Joint::start`: the freedoms, or 4 (a unit quaternion w, x, y, z) for a spherical joint.
+int CoordinatesOf(JointType type);
+
+/// A linear spring and the dry and viscous friction along one freedom of a joint.
+/// Generalised force on the freedom: -stiffness (q - rest) - viscous q' - coulomb sign(q').
+struct Passive {
+  double stiffness = 0;  ///< [N/m] or [N m/rad]
+  double rest = 0;       ///< coordinate at which the spring is slack [m] or [rad]
+  double viscous = 0;    ///< [N s/m] or [N m s/rad]
+  double coulomb = 0;    ///< constant part of dry friction [N] or [N m]
+};
+
+/// Dry friction in proportion to the joint's load. Rotations: moment = coefficient * radius *
+/// radial force; translations: force = coefficient * transverse force. The load is that of the
+/// joint itself, so that the reactions and the friction are found together.
+struct LoadFriction {
+  double coefficient = 0;  ///< [-]
+  double radius = 0;       ///< of the sliding surface of a rotation [m]
+};
+
+/// A joint is the coincidence of an anchor on its first link with one on its second. At
+/// coordinates zero the two anchors coincide; the coordinates describe the pose of the second
+/// anchor M in the first anchor F.
+struct Joint {
+  std::string name;
+  JointType type = JointType::kRevolute;
+  AnchorId first;   ///< F
+  AnchorId second;  ///< M
+  double pitch = 0;                 ///< kScrew: travel per radian [m/rad]
+  std::vector<double> start;        ///< coordinates at the start; CoordinatesOf(type) values
+  std::vector<double> lower, upper; ///< limits per freedom; infinite where there is none
+  std::vector<Passive> passive;     ///< per freedom
+  LoadFriction load_friction;
+  /// Stiffness of the joint against x, y, z [N/m] and about x, y, z [N m/rad], axes of F, for the
+  /// `stiffness` rule. Entries along freedoms are not used.
+  std::optional<Vector6d> stiffness;
+};
+
+enum class GraspKind { kRigid, kPoint };
+
+/// A frame G on a link by which a hand holds the mechanism.
+struct Grasp {
+  std::string name;
+  int link = -1;
+  Posed X_LG;
+  GraspKind kind = GraspKind::kRigid;
+};
+
+/// The immutable description of a mechanism. Names are unique within their list.
+struct Mechanism {
+  std::string name;
+  Vector3d gravity_W = Vector3d::Zero();  ///< [m/s^2], world axes = drawing axes of the ground link
+  int ground = 0;                         ///< index of the ground link
+  std::vector<Link> links;
+  std::vector<Joint> joints;
+  std::vector<Grasp> grasps;
+  std::vector<int> preferred_cuts;        ///< joints that the author wants to be cut
+
+  const Anchor& anchor(AnchorId id) const { return links[id.link].anchors[id.anchor]; }
+};
+
+/// Index of the named item; -1 if there is none.
+int FindLink(const Mechanism& mechanism, std::string_view name);
+int FindJoint(const Mechanism& mechanism, std::string_view name);
+int FindGrasp(const Mechanism& mechanism, std::string_view name);
+
+/// A frame from its z axis and an approximate x axis, which is made orthogonal to z.
+/// @throws std::invalid_argument if z has no length or x is parallel to z.
+Matrix3d AxesFromZX(const Vector3d& z, const Vector3d& x);
+
+/// A length that is typical of the mechanism: the mean distance of a moving link's anchors and
+/// centre of gravity from each other, or 1 m if all coincide. Used to weigh metres against radians.
+double CharacteristicLength(const Mechanism& mechanism);
+
+/// A joint's default start: all zero (the identity for a spherical joint).
+std::vector<double> ZeroCoordinates(JointType type);
+
+/// A joint of the given type with every per-freedom list at its default length and value.
+Joint MakeJoint(std::string name, JointType type, AnchorId first, AnchorId second);
+
+}  // namespace vmech

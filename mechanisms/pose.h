@@ -1,0 +1,72 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace vmech {
+
+template <typename T>
+using Vector3 = Eigen::Matrix<T, 3, 1>;
+template <typename T>
+using Vector6 = Eigen::Matrix<T, 6, 1>;
+template <typename T>
+using Matrix3 = Eigen::Matrix<T, 3, 3>;
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using Vector6d = Vector6<double>;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+/// The pose X_AB of a frame B in a frame A: p_A = R_AB p_B + p_AB. Lengths in metres.
+/// Products chain, X_AC = X_AB * X_BC. T is the scalar.
+template <typename T>
+struct Pose {
+  Matrix3<T> R = Matrix3<T>::Identity();
+  Vector3<T> p = Vector3<T>::Zero();
+
+  Pose operator*(const Pose& X) const { return {R * X.R, R * X.p + p}; }
+  Vector3<T> operator*(const Vector3<T>& point) const { return R * point + p; }
+  Pose inverse() const { return {R.transpose(), -(R.transpose() * p)}; }
+
+  template <typename S>
+  Pose<S> cast() const {
+    return {R.template cast<S>(), p.template cast<S>()};
+  }
+};
+using Posed = Pose<double>;
+
+/// A force f [N] and a moment m [N m] about a point that the name of the variable states.
+template <typename T>
+struct Wrench {
+  Vector3<T> force = Vector3<T>::Zero();
+  Vector3<T> moment = Vector3<T>::Zero();
+
+  Wrench operator+(const Wrench& w) const { return {force + w.force, moment + w.moment}; }
+  Wrench operator-(const Wrench& w) const { return {force - w.force, moment - w.moment}; }
+  Wrench operator-() const { return {-force, -moment}; }
+  Wrench& operator+=(const Wrench& w) { return *this = *this + w; }
+  Wrench& operator-=(const Wrench& w) { return *this = *this - w; }
+
+  /// The same wrench about a point P when it was about O; p_PO = O - P.
+  Wrench ShiftedBy(const Vector3<T>& p_PO) const { return {force, moment + p_PO.cross(force)}; }
+  /// The same wrench in the axes of a frame whose orientation is R (columns: its axes here).
+  Wrench In(const Matrix3<T>& R) const { return {R.transpose() * force, R.transpose() * moment}; }
+  /// [f; m].
+  Vector6<T> Stacked() const {
+    Vector6<T> w;
+    w << force, moment;
+    return w;
+  }
+};
+using Wrenchd = Wrench<double>;
+
+/// The matrix S(a) with S(a) b = a x b.
+template <typename T>
+Matrix3<T> CrossMatrix(const Vector3<T>& a) {
+  Matrix3<T> S;
+  S << T(0), -a.z(), a.y(), a.z(), T(0), -a.x(), -a.y(), a.x(), T(0);
+  return S;
+}
+
+}  // namespace vmech
