@@ -3,6 +3,7 @@
 option(VMECH_BUILD_APPS "build the vmech command" ON)
 option(VMECH_BUILD_TESTS "build the tests and benchmarks" ${PROJECT_IS_TOP_LEVEL})
 option(VMECH_BUILD_NOTEBOOKS "build the chapters of notebooks_cpp" ${PROJECT_IS_TOP_LEVEL})
+option(VMECH_LINT "run clang-format, clang-tidy and the text rules as tests" ${PROJECT_IS_TOP_LEVEL})
 option(VMECH_WARNINGS_AS_ERRORS "treat warnings as errors" OFF)
 option(VMECH_FORBID_MALLOC "make Eigen assert on allocations where they are forbidden" OFF)
 set(VMECH_SANITIZE "" CACHE STRING "sanitizers, for example address,undefined")
