@@ -53,7 +53,7 @@ install_packages() {
     mapfile -t -O "${#packages[@]}" packages < <(packages_of "$group")
   done
   command -v dpkg-query >/dev/null ||
-    die "this is not a Debian system; install the equivalents of packages.txt and use CMakePresets.json"
+    die "this is not a Debian system; install what packages.txt lists and use CMakePresets.json"
   mapfile -t missing < <(missing_among "${packages[@]}")
   [[ ${#missing[@]} -gt 0 ]] || return 0
 
@@ -62,7 +62,7 @@ install_packages() {
   apt-get install --simulate --no-install-recommends "${missing[@]}" >/dev/null 2>&1 ||
     as_root apt-get update -q
   as_root apt-get install -q -y --no-install-recommends "${missing[@]}" ||
-    die "apt-get could not install the packages; if its lists are old, run apt-get update and try again"
+    die "apt-get could not install the packages; run apt-get update and try again"
 }
 
 run_demo() {

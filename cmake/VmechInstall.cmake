@@ -7,6 +7,7 @@ configure_package_config_file(cmake/vmech-config.cmake.in ${PROJECT_BINARY_DIR}/
                               INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/vmech-config-version.cmake
                                  COMPATIBILITY SameMinorVersion)
-install(FILES ${PROJECT_BINARY_DIR}/vmech-config.cmake ${PROJECT_BINARY_DIR}/vmech-config-version.cmake
+install(FILES ${PROJECT_BINARY_DIR}/vmech-config.cmake
+              ${PROJECT_BINARY_DIR}/vmech-config-version.cmake
         DESTINATION ${package_dir})
 install(EXPORT vmech-targets NAMESPACE vmech:: DESTINATION ${package_dir})

@@ -18,7 +18,8 @@ function(vmech_add_module path)
 
   foreach(header ${ARG_HEADERS})
     set(forward ${include_root}/vmech/${path}/${header})
-    file(CONFIGURE OUTPUT ${forward} CONTENT "#include \"${CMAKE_CURRENT_SOURCE_DIR}/${header}\"\n" @ONLY)
+    file(CONFIGURE OUTPUT ${forward} @ONLY
+         CONTENT "#include \"${CMAKE_CURRENT_SOURCE_DIR}/${header}\"\n")
     install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/vmech/${path})
   endforeach()
 
@@ -27,6 +28,7 @@ function(vmech_add_module path)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_definitions(${target} PUBLIC EIGEN_MAX_ALIGN_BYTES=16)
   target_link_libraries(${target} PUBLIC ${ARG_PUBLIC}
-    PRIVATE ${ARG_PRIVATE} $<BUILD_INTERFACE:vmech_settings> $<BUILD_INTERFACE:vmech_kernel_settings>)
+    PRIVATE ${ARG_PRIVATE}
+            $<BUILD_INTERFACE:vmech_settings> $<BUILD_INTERFACE:vmech_kernel_settings>)
   install(TARGETS ${target} EXPORT vmech-targets)
 endfunction()

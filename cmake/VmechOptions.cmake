@@ -3,11 +3,13 @@
 option(VMECH_BUILD_APPS "build the vmech command" ON)
 option(VMECH_BUILD_TESTS "build the tests and benchmarks" ${PROJECT_IS_TOP_LEVEL})
 option(VMECH_BUILD_NOTEBOOKS "build the chapters of notebooks_cpp" ${PROJECT_IS_TOP_LEVEL})
-option(VMECH_LINT "run clang-format, clang-tidy and the text rules as tests" ${PROJECT_IS_TOP_LEVEL})
+option(VMECH_LINT "run clang-format, clang-tidy and the text rules as tests"
+       ${PROJECT_IS_TOP_LEVEL})
 option(VMECH_WARNINGS_AS_ERRORS "treat warnings as errors" OFF)
 option(VMECH_FORBID_MALLOC "make Eigen assert on allocations where they are forbidden" OFF)
 set(VMECH_SANITIZE "" CACHE STRING "sanitizers, for example address,undefined")
-set(VMECH_ARCH "x86-64-v3" CACHE STRING "-march of the library; empty for the compiler's own choice")
+set(VMECH_ARCH "x86-64-v3" CACHE STRING
+    "-march of the library; empty for the compiler's own choice")
 
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
@@ -16,6 +18,7 @@ set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 
 find_program(VMECH_CCACHE ccache)
 if(VMECH_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)

@@ -10,9 +10,8 @@ struct TypeInfo {
   int freedoms;
 };
 
-constexpr TypeInfo kTypes[] = {{"revolute", 1},  {"prismatic", 1}, {"cylindrical", 2},
-                               {"screw", 1},     {"universal", 2}, {"spherical", 3},
-                               {"planar", 3},    {"weld", 0}};
+constexpr TypeInfo kTypes[] = {{"revolute", 1},  {"prismatic", 1}, {"cylindrical", 2}, {"screw", 1},
+                               {"universal", 2}, {"spherical", 3}, {"planar", 3},      {"weld", 0}};
 
 template <typename Item>
 int FindByName(const std::vector<Item>& items, std::string_view name) {
@@ -24,9 +23,13 @@ int FindByName(const std::vector<Item>& items, std::string_view name) {
 
 }  // namespace
 
-std::string_view NameOf(JointType type) { return kTypes[static_cast<int>(type)].name; }
+std::string_view NameOf(JointType type) {
+  return kTypes[static_cast<int>(type)].name;
+}
 
-int FreedomsOf(JointType type) { return kTypes[static_cast<int>(type)].freedoms; }
+int FreedomsOf(JointType type) {
+  return kTypes[static_cast<int>(type)].freedoms;
+}
 
 int CoordinatesOf(JointType type) {
   return type == JointType::kSpherical ? 4 : FreedomsOf(type);
@@ -45,7 +48,8 @@ int FindGrasp(const Mechanism& mechanism, std::string_view name) {
 }
 
 Matrix3d AxesFromZX(const Vector3d& z, const Vector3d& x) {
-  constexpr double kParallel = 1e-6;  // sine of the angle below which x says nothing about the frame
+  constexpr double kParallel =
+      1e-6;  // sine of the angle below which x says nothing about the frame
   if (!(z.norm() > 0)) throw std::invalid_argument("the z axis has no length");
   const Vector3d z_unit = z.normalized();
   const Vector3d x_across = x - z_unit * z_unit.dot(x);

@@ -15,9 +15,9 @@ namespace vmech {
 
 /// Mass, centre of gravity and inertia of a link, in the link's drawing frame L.
 struct MassProperties {
-  double mass = 0;                                     ///< [kg]
-  Vector3d p_LoLcm = Vector3d::Zero();                 ///< centre of gravity [m]
-  Matrix3d I_Lcm = Matrix3d::Zero();                   ///< about the centre of gravity, axes of L [kg m^2]
+  double mass = 0;                      ///< [kg]
+  Vector3d p_LoLcm = Vector3d::Zero();  ///< centre of gravity [m]
+  Matrix3d I_Lcm = Matrix3d::Zero();    ///< about the centre of gravity, axes of L [kg m^2]
 };
 
 /// A frame on a link at which joints are made: z is the axis of rotation or translation, the
@@ -54,7 +54,8 @@ enum class JointType {
 std::string_view NameOf(JointType type);
 /// Freedoms of a joint, f = 0..3.
 int FreedomsOf(JointType type);
-/// Values in `Joint::start`: the freedoms, or 4 (a unit quaternion w, x, y, z) for a spherical joint.
+/// Values in `Joint::start`: the freedoms, or 4 (a unit quaternion w, x, y, z) for a spherical
+/// joint.
 int CoordinatesOf(JointType type);
 
 /// A linear spring and the dry and viscous friction along one freedom of a joint.
@@ -80,12 +81,12 @@ struct LoadFriction {
 struct Joint {
   std::string name;
   JointType type = JointType::kRevolute;
-  AnchorId first;   ///< F
-  AnchorId second;  ///< M
-  double pitch = 0;                 ///< kScrew: travel per radian [m/rad]
-  std::vector<double> start;        ///< coordinates at the start; CoordinatesOf(type) values
-  std::vector<double> lower, upper; ///< limits per freedom; infinite where there is none
-  std::vector<Passive> passive;     ///< per freedom
+  AnchorId first;                    ///< F
+  AnchorId second;                   ///< M
+  double pitch = 0;                  ///< kScrew: travel per radian [m/rad]
+  std::vector<double> start;         ///< coordinates at the start; CoordinatesOf(type) values
+  std::vector<double> lower, upper;  ///< limits per freedom; infinite where there is none
+  std::vector<Passive> passive;      ///< per freedom
   LoadFriction load_friction;
   /// Stiffness of the joint against x, y, z [N/m] and about x, y, z [N m/rad], axes of F, for the
   /// `stiffness` rule. Entries along freedoms are not used.
@@ -110,7 +111,7 @@ struct Mechanism {
   std::vector<Link> links;
   std::vector<Joint> joints;
   std::vector<Grasp> grasps;
-  std::vector<int> preferred_cuts;        ///< joints that the author wants to be cut
+  std::vector<int> preferred_cuts;  ///< joints that the author wants to be cut
 
   const Anchor& anchor(AnchorId id) const { return links[id.link].anchors[id.anchor]; }
 };
