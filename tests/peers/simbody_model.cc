@@ -2,6 +2,7 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "simbody_parts.h"
@@ -14,6 +15,22 @@ using SimTK::Constraint;
 using SimTK::MobilizedBody;
 using SimTK::SpatialVec;
 using SimTK::Transform;
+
+// Prescribes the accelerations of all freedoms of a mobilizer.
+class PrescribedAcceleration : public SimTK::Motion::Custom::Implementation {
+ public:
+  explicit PrescribedAcceleration(const Vector3d* udot) : udot_(udot) {}
+
+  SimTK::Motion::Level getLevel(const SimTK::State&) const override {
+    return SimTK::Motion::Acceleration;
+  }
+  void calcPrescribedAcceleration(const SimTK::State&, int nu, double* udot) const override {
+    std::copy_n(udot_->data(), nu, udot);
+  }
+
+ private:
+  const Vector3d* udot_;
+};
 
 // Velocity of M relative to F, at Mo, axes of F.
 SpatialVec RelativeVelocity(const LinkMotion& f, const Posed& X_WF, const LinkMotion& m,
@@ -43,10 +60,12 @@ struct SimbodyModel::Implementation {
   SimTK::Force::UniformGravity gravity;
   SimTK::Force::DiscreteForces discrete;
   std::vector<TreeJoint> tree;
-  std::vector<MobilizedBody> bodies;         // per link
-  std::vector<MobilizedBody> driven_bodies;  // per drive: the body whose mobilizer it is
+  std::vector<MobilizedBody> bodies;  // per link
+  std::vector<int> driven_links;      // per drive: the link that the driven mobilizer moves
+  std::vector<Vector3d> prescribed;   // per link: accelerations of its mobilizer, if driven
   std::vector<LoopEquation> loop_equations;
-  std::vector<Constraint::ConstantAcceleration> prescriptions;
+  SimTK::Vector_<SpatialVec> reactions;
+  SimTK::Vector motion_forces;
   SimTK::State state;
 
   Implementation(const Mechanism& given, std::vector<JointFreedom> driven, DriveMode drive_mode);
@@ -56,9 +75,10 @@ struct SimbodyModel::Implementation {
   void SetState(const std::vector<LinkMotion>& links);
   void SetForces(const SimbodyQuery& query);
   void CompareState(const std::vector<LinkMotion>& links, SimbodyAnswer* answer) const;
-  void ReadTreeWrenches(SimbodyAnswer* answer) const;
+  void ReadTreeWrenches(SimbodyAnswer* answer);
   void ReadLoopWrenches(SimbodyAnswer* answer) const;
-  void ReadMotionAndDrives(const SimbodyQuery& query, SimbodyAnswer* answer) const;
+  void ReadMotion(SimbodyAnswer* answer) const;
+  void ReadDrives(const SimbodyQuery& query, SimbodyAnswer* answer);
 
   Posed AnchorPose(AnchorId id) const {
     return FromSimTK(bodies[id.link].getBodyTransform(state)) * mechanism.anchor(id).X_LA;
@@ -127,13 +147,22 @@ void SimbodyModel::Implementation::BuildLoops() {
 }
 
 void SimbodyModel::Implementation::BuildDrives() {
+  prescribed.assign(mechanism.links.size(), Vector3d::Zero());
   for (const JointFreedom& drive : drives) {
+    const Joint& joint = mechanism.joints[drive.joint];
     const auto edge = std::find_if(tree.begin(), tree.end(),
                                    [&](const TreeJoint& e) { return e.joint == drive.joint; });
-    driven_bodies.push_back(bodies[edge->child]);
+    const auto count = std::count_if(drives.begin(), drives.end(),
+                                     [&](const JointFreedom& d) { return d.joint == drive.joint; });
+    driven_links.push_back(edge->child);
     if (mode == DriveMode::kForce) continue;
-    const JointType type = mechanism.joints[drive.joint].type;
-    prescriptions.emplace_back(driven_bodies.back(), SpeedIndex(type, drive.freedom), 0.0);
+    if (count != FreedomsOf(joint.type)) {
+      throw std::invalid_argument("joint '" + joint.name +
+                                  "': accelerations of some freedoms are given, of others not");
+    }
+    if (drive.freedom > 0) continue;
+    SimTK::Motion::Custom(bodies[edge->child],
+                          new PrescribedAcceleration(&prescribed[edge->child]));
   }
 }
 
@@ -166,12 +195,12 @@ void SimbodyModel::Implementation::SetForces(const SimbodyQuery& query) {
   }
   if (query.external_W.empty()) discrete.clearAllBodyForces(state);
   for (size_t i = 0; i < drives.size(); ++i) {
+    const int link = driven_links[i];
+    const auto u = SpeedIndex(mechanism.joints[drives[i].joint].type, drives[i].freedom);
     if (mode == DriveMode::kAcceleration) {
-      prescriptions[i].setAcceleration(state, query.drives[i]);
+      prescribed[link][u] = query.drives[i];
     } else {
-      const JointType type = mechanism.joints[drives[i].joint].type;
-      discrete.setOneMobilityForce(state, driven_bodies[i], SpeedIndex(type, drives[i].freedom),
-                                   query.drives[i]);
+      discrete.setOneMobilityForce(state, bodies[link], u, query.drives[i]);
     }
   }
 }
@@ -193,8 +222,7 @@ void SimbodyModel::Implementation::CompareState(const std::vector<LinkMotion>& l
 }
 
 // A mobilizer's reaction acts on the outboard body, at the origin of its frame.
-void SimbodyModel::Implementation::ReadTreeWrenches(SimbodyAnswer* answer) const {
-  SimTK::Vector_<SpatialVec> reactions;
+void SimbodyModel::Implementation::ReadTreeWrenches(SimbodyAnswer* answer) {
   matter.calcMobilizerReactionForces(state, reactions);
   for (const TreeJoint& edge : tree) {
     const Joint& joint = mechanism.joints[edge.joint];
@@ -221,15 +249,24 @@ void SimbodyModel::Implementation::ReadLoopWrenches(SimbodyAnswer* answer) const
   }
 }
 
-void SimbodyModel::Implementation::ReadMotionAndDrives(const SimbodyQuery& query,
-                                                       SimbodyAnswer* answer) const {
+void SimbodyModel::Implementation::ReadMotion(SimbodyAnswer* answer) const {
   for (size_t i = 0; i < bodies.size(); ++i) {
     const SpatialVec& A = bodies[i].getBodyAcceleration(state);
     answer->accelerations[i] = {FromSimTK(A[1]), FromSimTK(A[0])};
   }
+}
+
+// The forces of prescribed motion too have the sign of the left-hand side.
+void SimbodyModel::Implementation::ReadDrives(const SimbodyQuery& query, SimbodyAnswer* answer) {
+  if (mode == DriveMode::kForce) {
+    answer->drive_forces = query.drives;
+    return;
+  }
+  matter.findMotionForces(state, motion_forces);
   for (size_t i = 0; i < drives.size(); ++i) {
+    const auto u = SpeedIndex(mechanism.joints[drives[i].joint].type, drives[i].freedom);
     answer->drive_forces[i] =
-        mode == DriveMode::kForce ? query.drives[i] : -prescriptions[i].getMultiplier(state);
+        -bodies[driven_links[i]].getOneFromUPartition(state, u, motion_forces);
   }
 }
 
@@ -283,7 +320,8 @@ void SimbodyModel::Evaluate(const SimbodyQuery& query, SimbodyAnswer* answer) {
   s.CompareState(query.links, answer);
   s.ReadTreeWrenches(answer);
   s.ReadLoopWrenches(answer);
-  s.ReadMotionAndDrives(query, answer);
+  s.ReadMotion(answer);
+  s.ReadDrives(query, answer);
 }
 
 SimbodyAnswer SimbodyModel::Evaluate(const SimbodyQuery& query) {

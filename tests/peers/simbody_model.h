@@ -33,7 +33,8 @@ struct JointFreedom {
 
 /// What is known about the driven freedoms.
 enum class DriveMode {
-  kAcceleration,  ///< their accelerations [m/s^2 or rad/s^2]; the forces are found
+  kAcceleration,  ///< their accelerations [m/s^2 or rad/s^2], of all freedoms of a driven joint;
+                  ///< the forces are found
   kForce,         ///< their forces [N or N m]; the accelerations are found
 };
 
@@ -56,8 +57,8 @@ struct SimbodyAnswer {
 class SimbodyModel {
  public:
   /// Driven joints and screws belong to the spanning tree; then those with the fewest freedoms.
-  /// @throws std::invalid_argument if driven joints and screws close a loop among themselves, or
-  ///   a link is not connected to ground.
+  /// @throws std::invalid_argument if driven joints and screws close a loop among themselves, a
+  ///   link is not connected to ground, or only some freedoms of a joint are to be accelerated.
   SimbodyModel(const Mechanism& mechanism, std::vector<JointFreedom> drives, DriveMode mode);
   ~SimbodyModel();
   SimbodyModel(SimbodyModel&&) noexcept;

@@ -346,5 +346,10 @@ TEST(SimbodyModel, DrivenJointsThatCloseALoopAreRefused) {
                std::invalid_argument);
 }
 
+TEST(SimbodyModel, AcceleratingSomeFreedomsOfAJointIsRefused) {
+  const Mechanism m = Held(JointType::kUniversal, false);
+  EXPECT_THROW(SimbodyModel(m, {{0, 1}}, DriveMode::kAcceleration), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace vmech::peers
