@@ -1,0 +1,21 @@
+#pragma once
+
+#include <vector>
+
+#include "vmech/dynamics/pose_loads.h"
+
+namespace vmech {
+
+/// The load's wrench at a value of its table's argument, in its own axes. Linear between rows.
+/// Precondition: inside the table, unless it repeats (LoadOutsideTable).
+Wrenchd WrenchAt(const ExternalLoad& load, double at);
+/// Is the argument outside a table that does not repeat?
+bool OutsideTable(const ExternalLoad& load, double at);
+/// Time, the first drive's coordinate, or zero: the argument of a load's table at a pose.
+double TableArgument(const ExternalLoad& load, const PoseInput& input);
+
+/// All external wrenches at a pose about their points of application, world axes. Needs X_WB.
+void EvaluateExternalLoads(const LoadModel& model, const PoseInput& input, const LoadWorkspace& ws,
+                           std::vector<Wrenchd>* external_W);
+
+}  // namespace vmech

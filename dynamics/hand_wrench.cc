@@ -1,0 +1,69 @@
+#include "vmech/dynamics/hand_wrench.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "vmech/dynamics/newton_euler.h"
+#include "vmech/kinematics/forward_kinematics.h"
+#include "vmech/kinematics/jacobian.h"
+
+namespace vmech {
+namespace {
+
+MatrixXd GraspMotions(const LoadModel& model, const TreeWorkspace<double>& ws, const MatrixXd& N) {
+  MatrixXd J(6, model.tree.nv);
+  PointJacobian(model.tree, ws, GraspNode(model), GraspPose(model, ws).p, &J);
+  return J * N;
+}
+
+/// s of the least squares (J N) s = V in the metric K.
+VectorXd NearestMotion(const LoadModel& model, const LoadWorkspace& ws, const Vector6d& V) {
+  const MatrixXd JN = GraspMotions(model, ws.tree, ws.motions);
+  const MatrixXd KJN = model.hand_stiffness.asDiagonal() * JN;
+  return Eigen::LDLT<MatrixXd>(JN.transpose() * KJN).solve(KJN.transpose() * V);
+}
+
+}  // namespace
+
+int GraspNode(const LoadModel& model) {
+  return model.tree.NodeOfLink(model.tree.mechanism.grasps[model.hand->grasp].link);
+}
+
+Posed GraspPose(const LoadModel& model, const TreeWorkspace<double>& ws) {
+  const Grasp& grasp = model.tree.mechanism.grasps[model.hand->grasp];
+  return PoseInWorld(ws, GraspNode(model), model.tree.X_node_link(grasp.link) * grasp.X_LG);
+}
+
+double HandAuthority(const LoadModel& model, const TreeWorkspace<double>& ws, const MatrixXd& N) {
+  if (N.cols() == 0) return 1;
+  const MatrixXd JN = GraspMotions(model, ws, N);
+  const MatrixXd H = JN.transpose() * model.hand_stiffness.asDiagonal() * JN;
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(H, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, eigen.eigenvalues().minCoeff()) / eigen.eigenvalues().maxCoeff());
+}
+
+void HandVelocities(const LoadModel& model, const HandSample& hand, LoadWorkspace* ws) {
+  ws->v = ws->motions * NearestMotion(model, *ws, hand.V_WH);
+}
+
+void HandAccelerations(const LoadModel& model, const HandSample& hand, LoadWorkspace* ws) {
+  const Vector6d A_WG = PointAcceleration(ws->tree, GraspNode(model), GraspPose(model, ws->tree).p);
+  ws->vdot += ws->motions * NearestMotion(model, *ws, hand.A_WH - A_WG);
+}
+
+void ApplyHandWrench(const LoadModel& model, LoadWorkspace* ws, PoseLoads* out) {
+  const MatrixXd JN = GraspMotions(model, ws->tree, ws->motions);
+  const MatrixXd KJN = model.hand_stiffness.asDiagonal() * JN;
+  const VectorXd along = ws->motions.transpose() * (ws->tau - ws->passive);
+  const Vector6d w_d = KJN * Eigen::LDLT<MatrixXd>(JN.transpose() * KJN).solve(along);
+  out->hand = {w_d.head<3>(), w_d.tail<3>()};
+  const Vector3d p_WG = GraspPose(model, ws->tree).p;
+  for (int n = GraspNode(model); n >= 0; n = model.tree.nodes[n].parent) {
+    NodeState<double>& node = ws->tree.nodes[n];
+    node.F_Bo -= out->hand.ShiftedBy(p_WG - node.X_WB.p);
+  }
+  GeneralisedForces(model.tree, ws->tree, ws->tau.data());
+}
+
+}  // namespace vmech

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "vmech/dynamics/pose_loads.h"
+
+namespace vmech {
+
+/// Freedoms that no drive determines, such as the spin of a rod between two spherical joints. They
+/// move as they would from rest, without momentum of their own and without anything that drives
+/// them: with N_i their free motions,
+///
+///   N_i' M v = 0   and   N_i' (M v' + h - passive) = 0.
+///
+/// Both hold at all times for a rod whose mass is symmetric about the axis of its spin.
+
+/// Adds to ws->v the idle motion that takes its momentum away. Needs X_WB and ws->motions.
+void RemoveIdleMomentum(const LoadModel& model, LoadWorkspace* ws);
+
+/// Adds to ws->vdot the idle acceleration that leaves no force open along the idle freedoms; brings
+/// accelerations, F_Bo and tau up to date.
+void SettleIdleFreedoms(const LoadModel& model, LoadWorkspace* ws);
+
+/// How much a unit rate of the k-th idle freedom shifts the centre of gravity of any link, in
+/// characteristic lengths: above roundoff, the loads depend on a motion that no drive prescribes.
+double IdleShift(const LoadModel& model, const LoadWorkspace& ws, int k);
+
+}  // namespace vmech

@@ -1,0 +1,191 @@
+#include "vmech/dynamics/load_study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <limits>
+#include <stdexcept>
+#include <thread>
+
+#include "vmech/dynamics/external_loads.h"
+#include "vmech/dynamics/load_model.h"
+
+namespace vmech {
+namespace {
+
+constexpr size_t kChunk = 64;             // poses a thread takes at a time
+constexpr double kNearDeadCentre = 1e-8;  // pivots are squares; looked at closely below this
+
+void RequireInsideTables(const LoadModel& model, const std::vector<PoseInput>& inputs) {
+  for (size_t i = 0; i < inputs.size(); ++i) {
+    for (const ExternalLoad& load : model.external) {
+      const double at = TableArgument(load, inputs[i]);
+      if (!OutsideTable(load, at)) continue;
+      throw std::invalid_argument(fmt::format(
+          "pose {}: the table of the external load on link '{}' covers {:.6g} to {:.6g}, but "
+          "{:.6g} "
+          "is asked for; extend the table or give it a `period`",
+          i, model.tree.mechanism.links[load.link].name, load.at.front(), load.at.back(), at));
+    }
+  }
+}
+
+/// Evaluates all poses on several threads; each pose depends on its own input only.
+class ParallelEvaluation {
+ public:
+  ParallelEvaluation(const LoadModel& model, const std::vector<PoseInput>& inputs,
+                     const LoadStudyOptions& options, std::vector<PoseLoads>* poses)
+      : model_(model), inputs_(inputs), options_(options), poses_(*poses) {}
+
+  void Run() {
+    const size_t chunks = (inputs_.size() + kChunk - 1) / kChunk;
+    const size_t helpers = std::min<size_t>(options_.threads, std::max<size_t>(chunks, 1)) - 1;
+    std::vector<std::thread> threads;
+    for (size_t i = 0; i < helpers; ++i) threads.emplace_back([this] { Work(false); });
+    Work(true);
+    for (std::thread& thread : threads) thread.join();
+    if (stopped_) throw std::runtime_error("the study was stopped before its end");
+    if (dead_centre_ < inputs_.size()) ReportDeadCentre(dead_centre_);
+  }
+
+ private:
+  void Work(bool reports) {
+    LoadWorkspace ws(model_);
+    for (;;) {
+      const size_t begin = next_.fetch_add(kChunk);
+      if (begin >= inputs_.size() || stopped_) return;
+      const size_t end = std::min(begin + kChunk, inputs_.size());
+      for (size_t i = begin; i < end; ++i) Evaluate(i, &ws);
+      done_ += end - begin;
+      if (reports && options_.progress && !options_.progress(done_)) stopped_ = true;
+    }
+  }
+
+  void Evaluate(size_t i, LoadWorkspace* ws) {
+    SizePoseLoads(model_, &poses_[i]);
+    if (EvaluatePoseLoads(model_, inputs_[i], ws, &poses_[i])) {
+      EvaluateLinkMotions(model_, *ws, &poses_[i]);
+      return;
+    }
+    // The first dead centre, whichever thread finds it.
+    size_t first = dead_centre_;
+    while (i < first && !dead_centre_.compare_exchange_weak(first, i)) {
+    }
+  }
+
+  [[noreturn]] void ReportDeadCentre(size_t i) const {
+    throw std::runtime_error(fmt::format(
+        "pose {} (t = {:.6g} s) is a dead centre: the drive does not determine how the mechanism "
+        "moves on, and no drive force holds it. Drive another joint, or leave this pose out",
+        i, inputs_[i].time));
+  }
+
+  const LoadModel& model_;
+  const std::vector<PoseInput>& inputs_;
+  const LoadStudyOptions& options_;
+  std::vector<PoseLoads>& poses_;
+  std::atomic<size_t> next_{0}, done_{0};
+  std::atomic<size_t> dead_centre_{std::numeric_limits<size_t>::max()};
+  std::atomic<bool> stopped_{false};
+};
+
+/// Poses at which certainty is judged: evenly spread, a dozen or so.
+std::vector<size_t> JudgedPoses(size_t count) {
+  constexpr size_t kJudged = 13;
+  std::vector<size_t> judged;
+  for (size_t i = 0; i < std::min(count, kJudged); ++i)
+    judged.push_back(i * count / std::min(count, kJudged));
+  return judged;
+}
+
+/// What statics leaves open at any pose it leaves open; singular counts only if it is so
+/// everywhere.
+std::vector<JointCertainty> JudgeStudy(const LoadModel& model,
+                                       const std::vector<PoseInput>& inputs) {
+  std::vector<JointCertainty> verdict;
+  for (size_t i : JudgedPoses(inputs.size())) {
+    const auto here = JudgeCertainty(model.tree, model.partition, inputs[i].q);
+    if (verdict.empty()) {
+      verdict = here;
+      continue;
+    }
+    for (size_t j = 0; j < here.size(); ++j) {
+      for (int k = 0; k < 6; ++k) {
+        if (here[j][k] == Certainty::kNotDetermined || verdict[j][k] == Certainty::kSingular) {
+          verdict[j][k] = here[j][k];
+        }
+      }
+    }
+  }
+  return verdict;
+}
+
+void Summarise(const LoadModel& model, const std::vector<PoseInput>& inputs,
+               LoadStudyResult* result) {
+  size_t jammed = 0;
+  for (size_t i = 0; i < result->poses.size(); ++i) {
+    const PoseLoads& pose = result->poses[i];
+    result->max_closure = std::max(result->max_closure, pose.closure);
+    result->max_power_error = std::max(result->max_power_error, pose.power_error);
+    jammed += pose.jammed;
+    if (pose.smallest_pivot < kNearDeadCentre &&
+        DistanceFromDeadCentre(model.tree, model.partition, inputs[i].q) < kSingularTolerance) {
+      result->singular_poses.push_back(i);
+    }
+  }
+  if (jammed > 0) {
+    result->warnings.push_back(fmt::format(
+        "friction locks the mechanism at {} of {} poses (no equilibrium under the drive; the loads "
+        "there are not meaningful)",
+        jammed, result->poses.size()));
+  }
+  if (!result->singular_poses.empty()) {
+    result->warnings.push_back(fmt::format(
+        "{} pose(s), the first of them {}, lie at a dead centre: loads grow without bound there",
+        result->singular_poses.size(), result->singular_poses.front()));
+  }
+}
+
+}  // namespace
+
+void LoadStudyOptions::Validate() const {
+  if (threads < 1 || threads > 64) {
+    throw std::invalid_argument(
+        fmt::format("LoadStudyOptions: threads is {}; it must be in 1..64", threads));
+  }
+  if (!(closure_tolerance > 0 && closure_tolerance <= 1e-6)) {
+    throw std::invalid_argument(fmt::format(
+        "LoadStudyOptions: closure_tolerance is {}; it must be in (0, 1e-6]", closure_tolerance));
+  }
+}
+
+std::string LoadStudyResult::BriefReport() const {
+  return fmt::format(
+      "{} poses, mobility {}, {} redundant equation(s), closure {:.1e}, power {:.1e}", poses.size(),
+      mobility, redundant_equations, max_closure, max_power_error);
+}
+
+LoadStudyResult RunLoadStudy(const LoadStudy& study, const LoadStudyOptions& options) {
+  options.Validate();
+  PreparedStudy prepared = PrepareStudy(study);
+  const std::vector<PoseInput> inputs = TrackMotion(study, prepared, options.closure_tolerance);
+  RequireInsideTables(prepared.model, inputs);
+
+  LoadStudyResult result;
+  result.poses.resize(inputs.size());
+  ParallelEvaluation(prepared.model, inputs, options, &result.poses).Run();
+  result.certainty = JudgeStudy(prepared.model, inputs);
+  result.mobility = prepared.mobility.mobility;
+  result.redundant_equations = prepared.mobility.redundant;
+  for (const Loop& loop : prepared.model.tree.loops) {
+    result.cut_joints.push_back(study.mechanism.joints[loop.joint].name);
+  }
+  result.idle = prepared.idle;
+  result.norm_length = study.norm_length > 0 ? study.norm_length : prepared.model.tree.length;
+  result.warnings = prepared.warnings;
+  Summarise(prepared.model, inputs, &result);
+  return result;
+}
+
+}  // namespace vmech

@@ -1,0 +1,225 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "vmech/dynamics/hand_wrench.h"
+#include "vmech/dynamics/load_model.h"
+#include "vmech/kinematics/follow_hand.h"
+#include "vmech/kinematics/loops.h"
+
+namespace vmech {
+namespace {
+
+constexpr double kTurn = 6.283185307179586;
+
+/// Moves the mechanism with its drives.
+class Tracker {
+ public:
+  Tracker(const LoadStudy& study, const PreparedStudy& prepared, double tolerance)
+      : study_(study),
+        model_(prepared.model),
+        tree_(model_.tree),
+        tolerance_(tolerance),
+        ws_(tree_),
+        dependents_(tree_, model_.partition),
+        q_(prepared.q_start),
+        q_before_(q_),
+        q_trial_(q_),
+        step_(VectorXd::Zero(tree_.nv)),
+        cut_positions_(tree_.loops.size(), Vector3d::Zero()) {
+    for (const JointDrive& drive : study.drives) {
+      const int q = CoordinateIndex(tree_, drive.joint, drive.freedom);
+      coordinate_.push_back(q);
+      position_.push_back(q_[q]);
+    }
+    EvaluatePose(tree_, q_, &ws_);
+    StartCutPositions();
+  }
+
+  /// From the assembled start to where the motion begins.
+  void Approach() {
+    if (study_.hand) return Follow(study_.times.front(), 0);
+    const std::vector<double> from = position_;
+    for (int step = 1; step <= kApproachSteps; ++step) {
+      const double s = static_cast<double>(step) / kApproachSteps;
+      for (size_t k = 0; k < position_.size(); ++k) {
+        const double to = study_.drives[k].law.At(study_.times.front()).position;
+        target_.push_back(from[k] + s * (to - from[k]));
+      }
+      MoveTo(target_, study_.times.front(), 0, 0);
+      target_.clear();
+    }
+    has_history_ = false;
+  }
+
+  void Advance(double time, size_t pose) {
+    if (study_.hand) return Follow(time, pose);
+    target_.clear();
+    for (const JointDrive& drive : study_.drives) target_.push_back(drive.law.At(time).position);
+    MoveTo(target_, time, pose, 0);
+  }
+
+  PoseInput Input(double time) const {
+    PoseInput input;
+    input.time = time;
+    input.q = q_;
+    for (const JointDrive& drive : study_.drives) input.drives.push_back(drive.law.At(time));
+    if (study_.hand) input.hand = study_.hand->law.At(time);
+    input.cut_positions = cut_positions_;
+    return input;
+  }
+
+ private:
+  static constexpr int kApproachSteps = 16;
+  static constexpr int kDeepestHalving = 20;
+  static constexpr int kNewtonSteps = 6;
+  /// A correction of the predicted pose beyond this share of the step, or these radians, is not
+  /// trusted to stay on the branch.
+  static constexpr double kTrustedShare = 0.5;
+  static constexpr double kTrustedTurn = 0.02;
+
+  /// Moves all drives to the target, in halves where one step is not safe.
+  void MoveTo(const std::vector<double>& target, double time, size_t pose, int depth) {
+    if (TryStep(target)) return;
+    if (depth >= kDeepestHalving) Lost(time, pose);
+    std::vector<double> middle(target.size());
+    for (size_t k = 0; k < target.size(); ++k) middle[k] = 0.5 * (position_[k] + target[k]);
+    has_history_ = false;
+    MoveTo(middle, time, pose, depth + 1);
+    has_history_ = false;
+    MoveTo(target, time, pose, depth + 1);
+  }
+
+  bool TryStep(const std::vector<double>& target) {
+    q_trial_ = q_;
+    const double size = Predict(target);
+    for (size_t k = 0; k < target.size(); ++k) q_trial_[coordinate_[k]] = target[k];
+    q_predicted_ = q_trial_;
+    const double error =
+        CloseByNewton(tree_, tolerance_, kNewtonSteps, &dependents_, &ws_, &q_trial_);
+    const double correction = (q_trial_ - q_predicted_).cwiseAbs().maxCoeff();
+    if (!(error <= tolerance_) || correction > kTrustedShare * size + kTrustedTurn) return false;
+    Accept(target);
+    return true;
+  }
+
+  /// Along the last step if it was as long as this one, else along the tangent. Returns the size.
+  double Predict(const std::vector<double>& target) {
+    if (has_history_) {
+      // Same drive step as before: q + (q - q_before), quaternions by renormalising.
+      q_trial_ = 2 * q_ - q_before_;
+      Integrate(tree_, VectorXd::Zero(tree_.nv), &q_trial_);
+      return (q_trial_ - q_).cwiseAbs().maxCoeff();
+    }
+    EvaluatePose(tree_, q_, &ws_);
+    dependents_.Factor(ws_);
+    step_.setZero();
+    for (size_t k = 0; k < target.size(); ++k) {
+      step_[model_.partition.driven[k]] = target[k] - position_[k];
+    }
+    dependents_.CompleteVelocities(ws_, step_.data());
+    Integrate(tree_, step_, &q_trial_);
+    return step_.cwiseAbs().maxCoeff();
+  }
+
+  void Accept(const std::vector<double>& target) {
+    q_before_ = q_;
+    q_ = q_trial_;
+    position_ = target;
+    has_history_ = true;
+    UnwrapCutPositions();
+  }
+
+  void Follow(double time, size_t pose) {
+    const HandTarget target{GraspNode(model_),
+                            tree_.X_node_link(tree_.mechanism.grasps[study_.hand->grasp].link) *
+                                tree_.mechanism.grasps[study_.hand->grasp].X_LG,
+                            study_.hand->law.At(time).X_WH, model_.hand_stiffness};
+    FollowOptions options;
+    options.tolerance = tolerance_;
+    const FollowSummary summary = FollowHand(tree_, target, options, &dependents_, &ws_, &q_);
+    if (!summary.converged) Lost(time, pose);
+    UnwrapCutPositions();
+  }
+
+  void StartCutPositions() {
+    for (size_t l = 0; l < tree_.loops.size(); ++l) {
+      const Joint& joint = tree_.mechanism.joints[tree_.loops[l].joint];
+      if (joint.type == JointType::kSpherical) continue;
+      for (size_t k = 0; k < joint.start.size(); ++k) cut_positions_[l][k] = joint.start[k];
+    }
+    UnwrapCutPositions();
+  }
+
+  /// Angles of the cut joints continue from where they were.
+  void UnwrapCutPositions() {
+    for (size_t l = 0; l < tree_.loops.size(); ++l) {
+      const Vector3d now = CutJointCoordinates(tree_.loops[l], ws_.loops[l]);
+      for (int k = 0; k < 3; ++k) {
+        const bool is_angle = IsAngle(tree_.loops[l].type, k);
+        const double turns = is_angle ? std::round((cut_positions_[l][k] - now[k]) / kTurn) : 0;
+        cut_positions_[l][k] = now[k] + turns * kTurn;
+      }
+    }
+  }
+
+  static bool IsAngle(JointType type, int freedom) {
+    switch (type) {
+      case JointType::kRevolute:
+      case JointType::kUniversal:
+        return true;
+      case JointType::kCylindrical:
+        return freedom == 1;
+      case JointType::kPlanar:
+        return freedom == 2;
+      default:
+        return false;
+    }
+  }
+
+  [[noreturn]] void Lost(double time, size_t pose) const {
+    const double error = LargestLoopError(tree_, ws_);
+    std::string where;
+    for (size_t k = 0; k < study_.drives.size(); ++k) {
+      where += fmt::format(", '{}' at {:.6g}", tree_.mechanism.joints[study_.drives[k].joint].name,
+                           position_[k]);
+    }
+    throw std::runtime_error(fmt::format(
+        "the motion cannot be followed to pose {} (t = {:.6g} s): the mechanism stops{}, with a "
+        "loop error of {:.3g}. It is at a dead centre or at the edge of its reach; shorten the "
+        "motion, or drive another joint",
+        pose, time, where, error));
+  }
+
+  const LoadStudy& study_;
+  const LoadModel& model_;
+  const KinematicTree& tree_;
+  double tolerance_;
+  TreeWorkspace<double> ws_;
+  DependentSolver dependents_;
+  VectorXd q_, q_before_, q_trial_, q_predicted_;
+  VectorXd step_;
+  std::vector<int> coordinate_;   ///< index in q of each drive
+  std::vector<double> position_;  ///< of each drive
+  std::vector<double> target_;
+  std::vector<Vector3d> cut_positions_;
+  bool has_history_ = false;  ///< q_before_ lies one drive step behind q_
+};
+
+}  // namespace
+
+std::vector<PoseInput> TrackMotion(const LoadStudy& study, const PreparedStudy& prepared,
+                                   double closure_tolerance) {
+  Tracker tracker(study, prepared, closure_tolerance);
+  tracker.Approach();
+  std::vector<PoseInput> inputs;
+  inputs.reserve(study.times.size());
+  for (size_t i = 0; i < study.times.size(); ++i) {
+    tracker.Advance(study.times[i], i);
+    inputs.push_back(tracker.Input(study.times[i]));
+  }
+  return inputs;
+}
+
+}  // namespace vmech

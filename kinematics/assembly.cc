@@ -1,0 +1,209 @@
+#include "vmech/kinematics/assembly.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "vmech/kinematics/closure.h"
+#include "vmech/kinematics/loops.h"
+
+namespace vmech {
+namespace {
+
+/// The penalty iteration on the coordinates that may move.
+class PenaltyIteration {
+ public:
+  PenaltyIteration(const KinematicTree& tree, const AssemblyOptions& options, const VectorXd& q)
+      : tree_(tree), options_(options), ws_(tree), q_given_(q), q_(q) {
+    free_ = VectorXd::Ones(tree.nv);
+    for (int v : options.fixed) free_[v] = 0;
+    coordinate_weight_ = VectorXd::Ones(tree.nv);
+    for (const TreeNode& node : tree.nodes) {
+      if (node.motion == NodeMotion::kPrismatic) {
+        coordinate_weight_[node.v] = 1 / (tree.length * tree.length);
+      }
+    }
+    row_scale_ = LoopRowScale(tree);
+    shift_ = VectorXd::Zero(tree.rows);
+    Evaluate();
+  }
+
+  double error() const { return error_; }
+  const VectorXd& q() const { return q_; }
+  const TreeWorkspace<double>& ws() const { return ws_; }
+
+  /// [1; lambda C] dq = [q_given - q; lambda (e2 + s)], damped until the merit falls (paper eq. 8).
+  /// False when no step makes progress any more.
+  bool Step() {
+    const VectorXd departure = Departure(q_);
+    const MatrixXd C = ScaledJacobian();
+    const VectorXd gradient = coordinate_weight_.cwiseProduct(departure) +
+                              options_.penalty * (C.transpose() * (ScaledErrors() + shift_));
+    const double merit = Merit();
+    const VectorXd q_before = q_;
+    for (int attempt = 0; attempt < 30; ++attempt) {
+      MatrixXd H = options_.penalty * C.transpose() * C;
+      H.diagonal() += (1 + damping_) * coordinate_weight_;
+      q_ = q_before;
+      Integrate(tree_, Bounded(free_.cwiseProduct(SolveFree(H, gradient))), &q_);
+      Evaluate();
+      if (Merit() < merit) {
+        damping_ *= 0.2;
+        if (error_ < kMultiplierRegion) shift_ += ScaledErrors();
+        return true;
+      }
+      damping_ = std::max(4 * damping_, 1e-3);
+    }
+    q_ = q_before;
+    Evaluate();
+    return false;
+  }
+
+  /// Closes what is left by the shortest step, C dq = e2.
+  void CloseStep() {
+    const MatrixXd C = ScaledJacobian();
+    MatrixXd H = C.transpose() * C;
+    H.diagonal() += kShortestStep * coordinate_weight_;
+    Integrate(tree_, free_.cwiseProduct(SolveFree(H, C.transpose() * ScaledErrors())), &q_);
+    Evaluate();
+  }
+
+ private:
+  static constexpr double kMultiplierRegion = 0.1;  // linearisation is worth something
+  static constexpr double kShortestStep = 1e-10;    // far above roundoff, far below any stiffness
+  static constexpr double kLongestStep = 0.5;       // [rad], or characteristic lengths
+
+  void Evaluate() {
+    EvaluatePose(tree_, q_, &ws_);
+    error_ = LargestLoopError(tree_, ws_);
+  }
+
+  VectorXd ScaledErrors() const { return row_scale_.cwiseProduct(StackedLoopErrors(tree_, ws_)); }
+
+  MatrixXd ScaledJacobian() const {
+    return row_scale_.asDiagonal() * DenseLoopJacobian(tree_, ws_) * free_.asDiagonal();
+  }
+
+  /// The tangent vector from q to the given coordinates.
+  VectorXd Departure(const VectorXd& q) const {
+    VectorXd d = VectorXd::Zero(tree_.nv);
+    for (const TreeNode& node : tree_.nodes) {
+      if (node.q < 0) continue;
+      if (node.motion != NodeMotion::kSpherical) {
+        d[node.v] = q_given_[node.q] - q[node.q];
+        continue;
+      }
+      auto quaternion = [&](const VectorXd& c) {
+        return Eigen::Quaterniond(c[node.q], c[node.q + 1], c[node.q + 2], c[node.q + 3]);
+      };
+      const Eigen::AngleAxisd turn(quaternion(q).conjugate() * quaternion(q_given_));
+      d.segment<3>(node.v) = turn.angle() * turn.axis();
+    }
+    return d;
+  }
+
+  double Merit() const {
+    const VectorXd d = Departure(q_);
+    return d.dot(coordinate_weight_.cwiseProduct(d)) +
+           options_.penalty * (ScaledErrors() + shift_).squaredNorm() +
+           (error_ >= 2 ? options_.penalty : 0);
+  }
+
+  VectorXd Bounded(VectorXd dq) const {
+    const double size = std::sqrt(dq.dot(coordinate_weight_.cwiseProduct(dq)));
+    const double limit = kLongestStep * std::sqrt(static_cast<double>(tree_.nv));
+    return size > limit ? VectorXd(dq * (limit / size)) : dq;
+  }
+
+  VectorXd SolveFree(const MatrixXd& H, const VectorXd& gradient) const {
+    return Eigen::LDLT<MatrixXd>(H).solve(free_.cwiseProduct(gradient));
+  }
+
+  const KinematicTree& tree_;
+  const AssemblyOptions& options_;
+  TreeWorkspace<double> ws_;
+  VectorXd q_given_, q_;
+  VectorXd free_;               ///< 1 for coordinates that may move
+  VectorXd coordinate_weight_;  ///< makes departures dimensionless
+  VectorXd row_scale_;
+  VectorXd shift_;  ///< multiplier / lambda^2
+  double damping_ = 0;
+  double error_ = 0;
+};
+
+void DescribeError(const KinematicTree& tree, const TreeWorkspace<double>& ws,
+                   AssemblySummary* summary) {
+  double worst = -1;
+  for (size_t l = 0; l < tree.loops.size(); ++l) {
+    const LoopState<double>& s = ws.loops[l];
+    double distance = 0, angle = 0;
+    for (int i = 0; i < tree.loops[l].rows; ++i) {
+      (IsLengthRow(tree.loops[l].type, i) ? distance : angle) += s.e2[i] * s.e2[i];
+    }
+    const double size = std::sqrt(distance) / tree.length + std::sqrt(angle);
+    if (size <= worst) continue;
+    worst = size;
+    summary->worst_joint = tree.loops[l].joint;
+    summary->worst_distance = std::sqrt(distance);
+    summary->worst_angle = 2 * std::asin(std::min(1.0, std::sqrt(angle) / 2));
+  }
+}
+
+std::string FailureMessage(const KinematicTree& tree, const AssemblySummary& s) {
+  return fmt::format(
+      "the loop through joint '{}' cannot be closed near the start values: after {} iterations its "
+      "anchors are {:.4g} m and {:.4g} rad apart (at the start values the largest error was {:.3g} "
+      "of the characteristic length {:.4g} m). Check the anchors and lengths of its links, or give "
+      "start values nearer to an assembled pose",
+      tree.mechanism.joints[s.worst_joint].name, s.iterations, s.worst_distance, s.worst_angle,
+      s.start_error, tree.length);
+}
+
+}  // namespace
+
+void AssemblyOptions::Validate() const {
+  auto require = [](bool ok, const char* name, double value, const char* range) {
+    if (!ok) {
+      throw std::invalid_argument(
+          fmt::format("AssemblyOptions: {} is {}; it must be in {}", name, value, range));
+    }
+  };
+  require(tolerance > 0 && tolerance <= 1e-3, "tolerance", tolerance, "(0, 1e-3]");
+  require(max_iterations >= 1 && max_iterations <= 10000, "max_iterations", max_iterations,
+          "1..10000");
+  require(penalty >= 1 && penalty <= 1e8, "penalty", penalty, "[1, 1e8]");
+}
+
+AssemblySummary Assemble(const KinematicTree& tree, const AssemblyOptions& options, VectorXd* q) {
+  constexpr double kNearlyClosed = 1e-5;  // from here Newton converges quadratically
+  constexpr int kClosingSteps = 8;
+  options.Validate();
+  AssemblySummary summary;
+  if (tree.loops.empty()) {
+    summary.closed = true;
+    return summary;
+  }
+  PenaltyIteration iteration(tree, options, *q);
+  summary.start_error = iteration.error();
+  while (iteration.error() > kNearlyClosed && summary.iterations < options.max_iterations) {
+    ++summary.iterations;
+    if (!iteration.Step()) break;
+  }
+  for (int i = 0; i < kClosingSteps && iteration.error() > options.tolerance &&
+                  iteration.error() <= kNearlyClosed;
+       ++i) {
+    ++summary.iterations;
+    iteration.CloseStep();
+  }
+  *q = iteration.q();
+  summary.error = iteration.error();
+  summary.closed = summary.error <= options.tolerance;
+  DescribeError(tree, iteration.ws(), &summary);
+  if (!summary.closed) summary.message = FailureMessage(tree, summary);
+  return summary;
+}
+
+}  // namespace vmech

@@ -1,0 +1,186 @@
+#include "vmech/kinematics/forward_kinematics.h"
+
+#include <cmath>
+
+namespace vmech {
+namespace {
+
+/// R Rz(angle).
+template <typename T>
+Matrix3<T> TurnedAboutZ(const Matrix3<T>& R, const T& angle) {
+  using std::cos;
+  using std::sin;
+  const T c = cos(angle), s = sin(angle);
+  Matrix3<T> turned;
+  turned.col(0) = c * R.col(0) + s * R.col(1);
+  turned.col(1) = c * R.col(1) - s * R.col(0);
+  turned.col(2) = R.col(2);
+  return turned;
+}
+
+/// The rotation of a unit quaternion (w, x, y, z).
+template <typename T>
+Matrix3<T> RotationOf(const T* wxyz) {
+  const T &w = wxyz[0], &x = wxyz[1], &y = wxyz[2], &z = wxyz[3];
+  Matrix3<T> R;
+  R << 1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y),  //
+      2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x),   //
+      2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y);
+  return R;
+}
+
+/// The relative velocity of a node in its parent, world axes.
+template <typename T>
+struct RelativeMotion {
+  Vector3<T> angular = Vector3<T>::Zero();
+  Vector3<T> linear = Vector3<T>::Zero();  ///< of Bo
+};
+
+template <typename T>
+Vector3<T> SphericalRate(const TreeNode& node, const Matrix3<T>& R_WB, const Matrix3<T>& R_WP,
+                         const T* v) {
+  const Vector3<T> rate(v[node.v], v[node.v + 1], v[node.v + 2]);
+  if (!node.reversed) return R_WB * rate;
+  // v is the rate of M in F, in axes of M, which now is fixed in the parent; the child moves back.
+  return -(R_WP * (node.X_PF.R.cast<T>() * rate));
+}
+
+template <typename T>
+RelativeMotion<T> MotionAcross(const TreeNode& node, const Pose<T>& X_WB, const Matrix3<T>& R_WP,
+                               const T* v) {
+  RelativeMotion<T> motion;
+  switch (node.motion) {
+    case NodeMotion::kFixed:
+      break;
+    case NodeMotion::kRevolute:
+      motion.angular = v[node.v] * X_WB.R.col(2);
+      break;
+    case NodeMotion::kPrismatic:
+      motion.linear = v[node.v] * X_WB.R.col(2);
+      break;
+    case NodeMotion::kScrew:
+      motion.angular = v[node.v] * X_WB.R.col(2);
+      motion.linear = node.pitch * motion.angular;
+      break;
+    case NodeMotion::kSpherical:
+      motion.angular = SphericalRate(node, X_WB.R, R_WP, v);
+      break;
+  }
+  return motion;
+}
+
+}  // namespace
+
+template <typename T>
+void ForwardKinematics(const KinematicTree& tree, const T* q, TreeWorkspace<T>* ws) {
+  for (size_t i = 0; i < tree.nodes.size(); ++i) {
+    const TreeNode& node = tree.nodes[i];
+    Pose<T>& X = ws->nodes[i].X_WB;
+    X = node.X_PF.cast<T>();
+    if (node.parent >= 0) X = ws->nodes[node.parent].X_WB * X;
+    switch (node.motion) {
+      case NodeMotion::kFixed:
+        break;
+      case NodeMotion::kRevolute:
+        X.R = TurnedAboutZ(X.R, q[node.q]);
+        break;
+      case NodeMotion::kPrismatic:
+        X.p += q[node.q] * X.R.col(2);
+        break;
+      case NodeMotion::kScrew:
+        X.p += (node.pitch * q[node.q]) * X.R.col(2);
+        X.R = TurnedAboutZ(X.R, q[node.q]);
+        break;
+      case NodeMotion::kSpherical: {
+        const Matrix3<T> R_FM = RotationOf(q + node.q);
+        X.R = node.reversed ? Matrix3<T>(X.R * R_FM.transpose()) : Matrix3<T>(X.R * R_FM);
+        break;
+      }
+    }
+  }
+}
+
+template <typename T>
+void ForwardVelocities(const KinematicTree& tree, const T* v, TreeWorkspace<T>* ws) {
+  for (size_t i = 0; i < tree.nodes.size(); ++i) {
+    const TreeNode& node = tree.nodes[i];
+    NodeState<T>& s = ws->nodes[i];
+    if (node.parent < 0) {
+      const RelativeMotion<T> m = MotionAcross<T>(node, s.X_WB, Matrix3<T>::Identity(), v);
+      s.w = m.angular;
+      s.v = m.linear;
+      continue;
+    }
+    const NodeState<T>& parent = ws->nodes[node.parent];
+    const RelativeMotion<T> m = MotionAcross<T>(node, s.X_WB, parent.X_WB.R, v);
+    s.w = parent.w + m.angular;
+    s.v = parent.v + parent.w.cross(s.X_WB.p - parent.X_WB.p) + m.linear;
+  }
+}
+
+template <typename T>
+void ForwardAccelerations(const KinematicTree& tree, const T* v, const T* vdot,
+                          TreeWorkspace<T>* ws) {
+  for (size_t i = 0; i < tree.nodes.size(); ++i) {
+    const TreeNode& node = tree.nodes[i];
+    NodeState<T>& s = ws->nodes[i];
+    const Matrix3<T> R_WP =
+        node.parent < 0 ? Matrix3<T>(Matrix3<T>::Identity()) : ws->nodes[node.parent].X_WB.R;
+    RelativeMotion<T> rate;
+    if (vdot != nullptr) rate = MotionAcross<T>(node, s.X_WB, R_WP, vdot);
+    if (node.parent < 0) {
+      s.alpha = rate.angular;
+      s.a = rate.linear;
+      continue;
+    }
+    // The joint's axis is carried by the parent: w_P x (relative velocity), twice (Coriolis) for
+    // the linear part. The same holds for a spherical joint, because w_rel x w_rel = 0.
+    const NodeState<T>& parent = ws->nodes[node.parent];
+    const RelativeMotion<T> m = MotionAcross<T>(node, s.X_WB, R_WP, v);
+    const Vector3<T> r = s.X_WB.p - parent.X_WB.p;
+    s.alpha = parent.alpha + rate.angular + parent.w.cross(m.angular);
+    s.a = parent.a + parent.alpha.cross(r) + parent.w.cross(parent.w.cross(r) + 2.0 * m.linear) +
+          rate.linear;
+  }
+}
+
+template <typename T>
+Pose<T> PoseInWorld(const TreeWorkspace<T>& ws, int node, const Posed& X_BQ) {
+  if (node < 0) return X_BQ.cast<T>();
+  return ws.nodes[node].X_WB * X_BQ.cast<T>();
+}
+
+template <typename T>
+JointAxis<T> AxisInWorld(const KinematicTree& tree, const TreeWorkspace<T>& ws, int index,
+                         int axis) {
+  const TreeNode& node = tree.nodes[index];
+  const Matrix3<T>& R_WB = ws.nodes[index].X_WB.R;
+  const Vector3<T> zero = Vector3<T>::Zero();
+  switch (node.motion) {
+    case NodeMotion::kFixed:
+      return {zero, zero};
+    case NodeMotion::kRevolute:
+      return {R_WB.col(2), zero};
+    case NodeMotion::kPrismatic:
+      return {zero, R_WB.col(2)};
+    case NodeMotion::kScrew:
+      return {R_WB.col(2), node.pitch * R_WB.col(2)};
+    case NodeMotion::kSpherical:
+      break;
+  }
+  if (!node.reversed) return {R_WB.col(axis), zero};
+  const Vector3<T> column = node.X_PF.R.col(axis).cast<T>();
+  if (node.parent < 0) return {-column, zero};
+  return {-(ws.nodes[node.parent].X_WB.R * column), zero};
+}
+
+#define VMECH_INSTANTIATE_FORWARD_KINEMATICS(T)                                          \
+  template void ForwardKinematics<T>(const KinematicTree&, const T*, TreeWorkspace<T>*); \
+  template void ForwardVelocities<T>(const KinematicTree&, const T*, TreeWorkspace<T>*); \
+  template void ForwardAccelerations<T>(const KinematicTree&, const T*, const T*,        \
+                                        TreeWorkspace<T>*);                              \
+  template Pose<T> PoseInWorld<T>(const TreeWorkspace<T>&, int, const Posed&);           \
+  template JointAxis<T> AxisInWorld<T>(const KinematicTree&, const TreeWorkspace<T>&, int, int);
+VMECH_INSTANTIATE_FORWARD_KINEMATICS(double)
+
+}  // namespace vmech

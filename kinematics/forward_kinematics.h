@@ -1,0 +1,36 @@
+#pragma once
+
+#include "vmech/kinematics/tree_workspace.h"
+
+namespace vmech {
+
+/// Poses of all nodes from coordinates q [nq]. Writes NodeState::X_WB. O(n), no allocation.
+template <typename T>
+void ForwardKinematics(const KinematicTree& tree, const T* q, TreeWorkspace<T>* ws);
+
+/// Velocities of all nodes from v [nv]. Needs X_WB; writes w, v.
+template <typename T>
+void ForwardVelocities(const KinematicTree& tree, const T* v, TreeWorkspace<T>* ws);
+
+/// Accelerations of all nodes from v [nv] and vdot [nv]. Needs X_WB, w, v; writes alpha, a.
+/// With vdot = nullptr it gives the accelerations that remain when v' is zero (J' q').
+template <typename T>
+void ForwardAccelerations(const KinematicTree& tree, const T* v, const T* vdot,
+                          TreeWorkspace<T>* ws);
+
+/// Pose of a frame that is fixed in a node (node -1: the ground), from its pose X_BQ there.
+template <typename T>
+Pose<T> PoseInWorld(const TreeWorkspace<T>& ws, int node, const Posed& X_BQ);
+
+/// The unit twist [v; w] of a node's elementary joint, as felt at a point Q of the world that moves
+/// with a descendant: V_Q = linear + angular x (Q - Bo).
+template <typename T>
+struct JointAxis {
+  Vector3<T> angular;
+  Vector3<T> linear;
+};
+/// `axis` is 0..2 for a spherical joint and 0 else. Needs X_WB.
+template <typename T>
+JointAxis<T> AxisInWorld(const KinematicTree& tree, const TreeWorkspace<T>& ws, int node, int axis);
+
+}  // namespace vmech

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "vmech/kinematics/closure.h"
+#include "vmech/kinematics/tree_workspace.h"
+
+namespace vmech {
+
+/// Geometric Jacobian J [6, nv] of a point Q that moves with a node, V_WQ = J v, [v; w], world
+/// axes. Needs X_WB. `J` must be [6, nv].
+void PointJacobian(const KinematicTree& tree, const TreeWorkspace<double>& ws, int node,
+                   const Vector3d& p_WQ, MatrixXd* J);
+
+/// Twist and acceleration [linear; angular] of a point Q of a node. Need w, v and alpha, a.
+Vector6d PointTwist(const TreeWorkspace<double>& ws, int node, const Vector3d& p_WQ);
+Vector6d PointAcceleration(const TreeWorkspace<double>& ws, int node, const Vector3d& p_WQ);
+
+/// The motions that the loops allow, N [nv, independent]: column k moves the k-th of
+/// [driven, idle] at unit rate and the other independent velocities not at all, C N = 0. Needs
+/// LoopJacobian in ws and a factored `dependents`. `N` must have that size.
+void FreeMotions(const TreeWorkspace<double>& ws, DependentSolver* dependents, MatrixXd* N);
+
+}  // namespace vmech

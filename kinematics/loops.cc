@@ -1,0 +1,313 @@
+#include "vmech/kinematics/loops.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "vmech/kinematics/forward_kinematics.h"
+
+namespace vmech {
+namespace {
+
+/// Components of [v; w] in axes of F that a joint of the type holds.
+struct RowSelection {
+  int count;
+  int index[6];
+};
+constexpr RowSelection kSelection[] = {
+    {5, {0, 1, 2, 3, 4}},     // revolute
+    {5, {0, 1, 3, 4, 5}},     // prismatic
+    {4, {0, 1, 3, 4}},        // cylindrical
+    {4, {0, 1, 3, 4}},        // screw, and one row of its own
+    {3, {0, 1, 2}},           // universal, and one row of its own
+    {3, {0, 1, 2}},           // spherical
+    {3, {2, 3, 4}},           // planar
+    {6, {0, 1, 2, 3, 4, 5}},  // weld
+};
+
+/// The rows of a relative twist in axes of F.
+template <typename T>
+Vector6<T> ProjectOnRows(const Loop& loop, const Vector3<T>& n_F, const Vector3<T>& linear,
+                         const Vector3<T>& angular) {
+  const RowSelection& selection = kSelection[static_cast<int>(loop.type)];
+  Vector6<T> rows = Vector6<T>::Zero();
+  for (int i = 0; i < selection.count; ++i) {
+    const int k = selection.index[i];
+    rows[i] = k < 3 ? linear[k] : angular[k - 3];
+  }
+  if (loop.type == JointType::kScrew) rows[4] = linear[2] - loop.pitch * angular[2];
+  if (loop.type == JointType::kUniversal) rows[3] = n_F.dot(angular);
+  return rows;
+}
+
+/// The same vector times 2 sin(angle/2)/sin(angle), where cosine = cos(angle).
+template <typename T>
+Vector3<T> ChordFromSine(const Vector3<T>& sine, const T& cosine) {
+  using std::sqrt;
+  constexpr double kHalfTurnGuard = 1e-300;  // keeps an exact half turn finite
+  return sine * sqrt(2.0 / (1.0 + cosine + kHalfTurnGuard));
+}
+
+/// The rotation from F to M that the joint does not allow, in axes of F.
+template <typename T>
+Vector3<T> ForbiddenRotation(JointType type, const Matrix3<T>& R) {
+  switch (type) {
+    case JointType::kPrismatic:
+    case JointType::kWeld: {
+      const Vector3<T> sine =
+          0.5 * Vector3<T>(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));
+      return ChordFromSine<T>(sine, 0.5 * (R.trace() - 1.0));
+    }
+    case JointType::kSpherical:
+    case JointType::kUniversal:
+      return Vector3<T>::Zero();
+    default:
+      return ChordFromSine<T>(Vector3<T>(-R(1, 2), R(0, 2), T(0)), R(2, 2));
+  }
+}
+
+template <typename T>
+T TurnAboutZ(const Matrix3<T>& R_FM) {
+  using std::atan2;
+  return atan2(R_FM(1, 0) - R_FM(0, 1), R_FM(0, 0) + R_FM(1, 1));
+}
+
+/// The turn of a screw joint; whole turns are told by the travel.
+template <typename T>
+T ScrewTurn(const Matrix3<T>& R_FM, const T& travel, double pitch) {
+  using std::round;
+  constexpr double kTurn = 2 * std::numbers::pi;
+  const T angle = TurnAboutZ(R_FM);
+  return angle + kTurn * round((travel / pitch - angle) / kTurn);
+}
+
+/// Velocity, angular velocity and acceleration of a point Q of the world that moves with a node.
+template <typename T>
+struct PointMotion {
+  Vector3<T> w, v, alpha, a;
+};
+
+template <typename T>
+PointMotion<T> MotionAt(const TreeWorkspace<T>& ws, int node, const Vector3<T>& p_WQ) {
+  const Vector3<T> zero = Vector3<T>::Zero();
+  if (node < 0) return {zero, zero, zero, zero};
+  const NodeState<T>& s = ws.nodes[node];
+  const Vector3<T> r = p_WQ - s.X_WB.p;
+  return {s.w, s.v + s.w.cross(r), s.alpha, s.a + s.alpha.cross(r) + s.w.cross(s.w.cross(r))};
+}
+
+}  // namespace
+
+template <typename T>
+void LoopErrors(const KinematicTree& tree, TreeWorkspace<T>* ws) {
+  for (size_t l = 0; l < tree.loops.size(); ++l) {
+    const Loop& loop = tree.loops[l];
+    const JointPlacement& place = tree.placements[loop.joint];
+    LoopState<T>& s = ws->loops[l];
+    const Pose<T> X_WF = PoseInWorld(*ws, place.first_node, place.X_AF);
+    const Pose<T> X_WM = PoseInWorld(*ws, place.second_node, place.X_BM);
+    s.R_WF = X_WF.R;
+    s.p_WM = X_WM.p;
+    s.p_FM_W = X_WM.p - X_WF.p;
+    s.R_FM = X_WF.R.transpose() * X_WM.R;
+    const Vector3<T> p_FM = X_WF.R.transpose() * s.p_FM_W;
+    const Vector3<T> y_M = s.R_FM.col(1);
+    s.n_F = y_M.cross(Vector3<T>::UnitX());
+    // e2 = C dq moves M back to where it belongs in F.
+    s.e2 = -ProjectOnRows<T>(loop, s.n_F, p_FM, ForbiddenRotation<T>(loop.type, s.R_FM));
+    if (loop.type == JointType::kUniversal) s.e2[3] = -y_M.x();
+    if (loop.type == JointType::kScrew) {
+      s.e2[4] = loop.pitch * ScrewTurn<T>(s.R_FM, p_FM.z(), loop.pitch) - p_FM.z();
+    }
+  }
+}
+
+template <typename T>
+void LoopJacobian(const KinematicTree& tree, TreeWorkspace<T>* ws) {
+  for (size_t l = 0; l < tree.loops.size(); ++l) {
+    const Loop& loop = tree.loops[l];
+    const LoopState<T>& s = ws->loops[l];
+    Vector6<T>* column = &ws->loop_columns[ws->first_column[l]];
+    for (const LoopColumn& c : loop.columns) {
+      const JointAxis<T> axis = AxisInWorld(tree, *ws, c.node, c.axis);
+      const Vector3<T> linear = axis.linear + axis.angular.cross(s.p_WM - ws->nodes[c.node].X_WB.p);
+      *column++ = ProjectOnRows<T>(loop, s.n_F, c.sign * (s.R_WF.transpose() * linear),
+                                   c.sign * (s.R_WF.transpose() * axis.angular));
+    }
+  }
+}
+
+template <typename T>
+void LoopAccelerationBias(const KinematicTree& tree, TreeWorkspace<T>* ws) {
+  for (size_t l = 0; l < tree.loops.size(); ++l) {
+    const Loop& loop = tree.loops[l];
+    const JointPlacement& place = tree.placements[loop.joint];
+    LoopState<T>& s = ws->loops[l];
+    const PointMotion<T> A = MotionAt(*ws, place.first_node, s.p_WM);
+    const PointMotion<T> B = MotionAt(*ws, place.second_node, s.p_WM);
+    // Second derivatives as an observer on F sees them.
+    const Vector3<T> w_rel = B.w - A.w;
+    const Vector3<T> linear = B.a - A.a - 2.0 * A.w.cross(B.v - A.v);
+    const Vector3<T> angular = B.alpha - A.alpha - A.w.cross(w_rel);
+    s.bias =
+        ProjectOnRows<T>(loop, s.n_F, s.R_WF.transpose() * linear, s.R_WF.transpose() * angular);
+    if (loop.type == JointType::kUniversal) {
+      // n = y_M x x_F turns in F.
+      const Vector3<T> w_F = s.R_WF.transpose() * w_rel;
+      s.bias[3] += w_F.cross(s.R_FM.col(1)).cross(Vector3<T>::UnitX()).dot(w_F);
+    }
+  }
+}
+
+template <typename T>
+Wrench<T> WrenchOfMultipliers(const Loop& loop, const LoopState<T>& state, const T* mu) {
+  const RowSelection& selection = kSelection[static_cast<int>(loop.type)];
+  Wrench<T> w;
+  for (int i = 0; i < selection.count; ++i) {
+    const int k = selection.index[i];
+    (k < 3 ? w.force[k] : w.moment[k - 3]) = mu[i];
+  }
+  if (loop.type == JointType::kScrew) {
+    w.force[2] = mu[4];
+    w.moment[2] = -loop.pitch * mu[4];
+  }
+  if (loop.type == JointType::kUniversal) w.moment = state.n_F * mu[3];
+  return w;
+}
+
+Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6> MultiplierBasis(const Loop& loop,
+                                                                  const LoopState<double>& state) {
+  Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6> basis(6, loop.rows);
+  for (int i = 0; i < loop.rows; ++i) {
+    const Vector6d unit = Vector6d::Unit(i);
+    basis.col(i) = WrenchOfMultipliers(loop, state, unit.data()).Stacked();
+  }
+  return basis;
+}
+
+Vector3d CutJointCoordinates(const Loop& loop, const LoopState<double>& state) {
+  const Matrix3d& R = state.R_FM;
+  const Vector3d p = state.R_WF.transpose() * state.p_FM_W;
+  switch (loop.type) {
+    case JointType::kRevolute:
+      return {TurnAboutZ(R), 0, 0};
+    case JointType::kPrismatic:
+      return {p.z(), 0, 0};
+    case JointType::kCylindrical:
+      return {p.z(), TurnAboutZ(R), 0};
+    case JointType::kScrew:
+      return {ScrewTurn(R, p.z(), loop.pitch), 0, 0};
+    case JointType::kUniversal:
+      return {std::atan2(R(2, 1), R(1, 1)), std::atan2(R(0, 2), R(0, 0)), 0};
+    case JointType::kSpherical: {
+      const Eigen::AngleAxisd turn(R);
+      return turn.angle() * turn.axis();
+    }
+    case JointType::kPlanar:
+      return {p.x(), p.y(), TurnAboutZ(R)};
+    case JointType::kWeld:
+      break;
+  }
+  return Vector3d::Zero();
+}
+
+CutJointFreedoms FreedomsOfCutJoint(const Loop& loop, const LoopState<double>& state) {
+  auto along = [](const Vector3d& axis) {
+    return (Vector6d() << axis, Vector3d::Zero()).finished();
+  };
+  auto about = [](const Vector3d& axis) {
+    return (Vector6d() << Vector3d::Zero(), axis).finished();
+  };
+  const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ();
+  switch (loop.type) {
+    case JointType::kRevolute:
+      return {1, {about(z)}};
+    case JointType::kPrismatic:
+      return {1, {along(z)}};
+    case JointType::kCylindrical:
+      return {2, {along(z), about(z)}};
+    case JointType::kScrew:
+      return {1, {loop.pitch * along(z) + about(z)}};
+    case JointType::kUniversal:
+      return {2, {about(x), about(state.R_FM.col(1))}};
+    case JointType::kSpherical:
+      return {3, {about(state.R_FM.col(0)), about(state.R_FM.col(1)), about(state.R_FM.col(2))}};
+    case JointType::kPlanar:
+      return {3, {along(x), along(y), about(z)}};
+    case JointType::kWeld:
+      break;
+  }
+  return {};
+}
+
+Vector3d CutJointRates(const KinematicTree& tree, const TreeWorkspace<double>& ws, int loop_index) {
+  const Loop& loop = tree.loops[loop_index];
+  const LoopState<double>& s = ws.loops[loop_index];
+  const JointPlacement& place = tree.placements[loop.joint];
+  const PointMotion<double> A = MotionAt(ws, place.first_node, s.p_WM);
+  const PointMotion<double> B = MotionAt(ws, place.second_node, s.p_WM);
+  Vector6d V_FM;
+  V_FM << s.R_WF.transpose() * (B.v - A.v), s.R_WF.transpose() * (B.w - A.w);
+  const CutJointFreedoms freedoms = FreedomsOfCutJoint(loop, s);
+  Vector3d rates = Vector3d::Zero();
+  for (int i = 0; i < freedoms.count; ++i) {
+    rates[i] = freedoms.twist_F[i].dot(V_FM) / freedoms.twist_F[i].squaredNorm();
+  }
+  return rates;
+}
+
+MatrixXd DenseLoopJacobian(const KinematicTree& tree, const TreeWorkspace<double>& ws) {
+  MatrixXd C = MatrixXd::Zero(tree.rows, tree.nv);
+  for (size_t l = 0; l < tree.loops.size(); ++l) {
+    const Loop& loop = tree.loops[l];
+    const Vector6d* column = &ws.loop_columns[ws.first_column[l]];
+    for (const LoopColumn& c : loop.columns) {
+      C.block(loop.row, c.v, loop.rows, 1) = (column++)->head(loop.rows);
+    }
+  }
+  return C;
+}
+
+VectorXd StackedLoopErrors(const KinematicTree& tree, const TreeWorkspace<double>& ws) {
+  VectorXd e2(tree.rows);
+  for (size_t l = 0; l < tree.loops.size(); ++l) {
+    e2.segment(tree.loops[l].row, tree.loops[l].rows) = ws.loops[l].e2.head(tree.loops[l].rows);
+  }
+  return e2;
+}
+
+VectorXd LoopRowScale(const KinematicTree& tree) {
+  VectorXd scale = VectorXd::Ones(tree.rows);
+  for (const Loop& loop : tree.loops) {
+    for (int i = 0; i < loop.rows; ++i) {
+      if (IsLengthRow(loop.type, i)) scale[loop.row + i] = 1 / tree.length;
+    }
+  }
+  return scale;
+}
+
+bool IsLengthRow(JointType type, int row) {
+  const RowSelection& selection = kSelection[static_cast<int>(type)];
+  if (row >= selection.count) return type == JointType::kScrew;
+  return selection.index[row] < 3;
+}
+
+bool FacesBackwards(const Loop& loop, const LoopState<double>& state) {
+  switch (loop.type) {
+    case JointType::kSpherical:
+    case JointType::kUniversal:
+      return false;
+    case JointType::kPrismatic:
+    case JointType::kWeld:
+      return state.R_FM.trace() < 1;
+    default:
+      return state.R_FM(2, 2) < 0;
+  }
+}
+
+template void LoopErrors<double>(const KinematicTree&, TreeWorkspace<double>*);
+template void LoopJacobian<double>(const KinematicTree&, TreeWorkspace<double>*);
+template void LoopAccelerationBias<double>(const KinematicTree&, TreeWorkspace<double>*);
+template Wrench<double> WrenchOfMultipliers<double>(const Loop&, const LoopState<double>&,
+                                                    const double*);
+
+}  // namespace vmech

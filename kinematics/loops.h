@@ -1,0 +1,70 @@
+#pragma once
+
+#include "vmech/kinematics/tree_workspace.h"
+
+namespace vmech {
+
+/// Loop closure, paper eq. (4)-(6), for a cut joint of any type. F and M are the anchors of the cut
+/// joint on its first and second link. With f freedoms the joint closes its loop with 6 - f
+/// equations, the directions in which M may not move in F:
+///
+///   revolute, cylindrical  p_x p_y (p_z)  r_x r_y          prismatic  p_x p_y  r_x r_y r_z
+///   screw      p_x p_y  r_x r_y  p_z - pitch r_z            planar     p_z  r_x r_y
+///   universal  p_x p_y p_z  and the rotation about y_M x x_F
+///   spherical  p_x p_y p_z                                  weld       all six
+///
+/// all in axes of F. r is the rotation that is left, 2 sin(angle/2) times its axis; where the joint
+/// turns about z, it is the turn that brings z_M back onto z_F. Unlike the paper's sine (eq. 6) it
+/// grows up to half a turn, so that a loop assembled upside down does not pass for closed.
+
+/// Needs X_WB; writes everything in LoopState but `bias`.
+template <typename T>
+void LoopErrors(const KinematicTree& tree, TreeWorkspace<T>* ws);
+
+/// C = -d e2 / dv at a closed loop (paper eq. 4: e2 = C dq). Needs LoopErrors; writes loop_columns.
+template <typename T>
+void LoopJacobian(const KinematicTree& tree, TreeWorkspace<T>* ws);
+
+/// The part of the relative acceleration of the anchors that is there when v' = 0, so that a closed
+/// loop obeys C v' + bias = 0. Needs w, v and accelerations of ForwardAccelerations(vdot = nullptr)
+/// and LoopErrors; writes LoopState::bias.
+template <typename T>
+void LoopAccelerationBias(const KinematicTree& tree, TreeWorkspace<T>* ws);
+
+/// The wrench on the second link about M, in axes of F, of multipliers mu [rows] on the equations.
+template <typename T>
+Wrench<T> WrenchOfMultipliers(const Loop& loop, const LoopState<T>& state, const T* mu);
+
+/// The 6 x rows matrix T of the above, W_M = T mu, [f; m] in axes of F.
+Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6> MultiplierBasis(const Loop& loop,
+                                                                  const LoopState<double>& state);
+
+/// Coordinates of a cut joint that has turned and shifted freely, from the poses of its anchors
+/// [FreedomsOf(type)]; for a spherical joint the rotation vector. Angles within +-pi.
+Vector3d CutJointCoordinates(const Loop& loop, const LoopState<double>& state);
+
+/// Unit twists [v; w] of M in F of the freedoms of a cut joint, axes of F.
+struct CutJointFreedoms {
+  int count = 0;
+  Vector6d twist_F[3];
+};
+CutJointFreedoms FreedomsOfCutJoint(const Loop& loop, const LoopState<double>& state);
+
+/// Rates of the coordinates of a cut joint [FreedomsOf(type)]; for a spherical joint the angular
+/// velocity of M in F, axes of M. Needs w, v and LoopErrors.
+Vector3d CutJointRates(const KinematicTree& tree, const TreeWorkspace<double>& ws, int loop);
+
+/// Is equation `row` of a loop one of lengths (in metres)?
+bool IsLengthRow(JointType type, int row);
+/// Is the joint assembled more than a quarter turn from where it belongs, so that small errors mean
+/// nothing?
+bool FacesBackwards(const Loop& loop, const LoopState<double>& state);
+
+/// Dense C [rows, nv] for the analyses that need it whole. Needs LoopJacobian.
+MatrixXd DenseLoopJacobian(const KinematicTree& tree, const TreeWorkspace<double>& ws);
+/// All e2, stacked [rows]; lengths in metres, rotations in radians.
+VectorXd StackedLoopErrors(const KinematicTree& tree, const TreeWorkspace<double>& ws);
+/// 1/length for rows that are lengths, 1 for rotations [rows]: makes C dimensionless.
+VectorXd LoopRowScale(const KinematicTree& tree);
+
+}  // namespace vmech

@@ -1,0 +1,152 @@
+#include "vmech/kinematics/mobility.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "vmech/kinematics/assembly.h"
+#include "vmech/kinematics/closure.h"
+#include "vmech/kinematics/forward_kinematics.h"
+#include "vmech/kinematics/loops.h"
+#include "vmech/kinematics/null_space.h"
+
+namespace vmech {
+namespace {
+
+constexpr double kMoves = 1e-6;  // share of a unit motion that counts as moving
+
+/// Characteristic lengths or radians per unit of each velocity.
+VectorXd ColumnScale(const KinematicTree& tree) {
+  VectorXd scale = VectorXd::Ones(tree.nv);
+  for (const TreeNode& node : tree.nodes) {
+    if (node.motion == NodeMotion::kPrismatic) scale[node.v] = tree.length;
+  }
+  return scale;
+}
+
+/// Closed poses a little way along every free motion of q, to both sides, and along their sum.
+std::vector<VectorXd> Neighbours(const KinematicTree& tree, const VectorXd& q,
+                                 const MatrixXd& motions) {
+  constexpr double kStep = 0.05;  // [rad]: well clear of a dead centre, well within a branch
+  std::vector<VectorXd> neighbours;
+  auto add = [&](const VectorXd& direction) {
+    VectorXd near = q;
+    Integrate(tree, kStep * direction, &near);
+    if (Assemble(tree, {}, &near).closed) neighbours.push_back(near);
+  };
+  for (Eigen::Index k = 0; k < motions.cols(); ++k) {
+    add(motions.col(k));
+    add(-motions.col(k));
+  }
+  if (motions.cols() > 1) add(motions.rowwise().sum());
+  return neighbours;
+}
+
+/// Velocity of every joint in a free motion of the tree: largest of its components, dimensionless.
+double JointMotion(const KinematicTree& tree, const TreeWorkspace<double>& ws, int joint) {
+  const JointPlacement& place = tree.placements[joint];
+  const Posed X_WM = PoseInWorld(ws, place.second_node, place.X_BM);
+  auto twist = [&](int node) -> Vector6d {
+    if (node < 0) return Vector6d::Zero();
+    const NodeState<double>& s = ws.nodes[node];
+    Vector6d V;
+    V << (s.v + s.w.cross(X_WM.p - s.X_WB.p)) / tree.length, s.w;
+    return V;
+  };
+  return (twist(place.second_node) - twist(place.first_node)).cwiseAbs().maxCoeff();
+}
+
+std::vector<bool> MovingJoints(const KinematicTree& tree, const VectorXd& q,
+                               const MatrixXd& motions) {
+  TreeWorkspace<double> ws(tree);
+  EvaluatePose(tree, q, &ws, false);
+  std::vector<bool> moves(tree.mechanism.joints.size(), false);
+  for (Eigen::Index k = 0; k < motions.cols(); ++k) {
+    const VectorXd v = motions.col(k);
+    ForwardVelocities(tree, v.data(), &ws);
+    for (size_t j = 0; j < moves.size(); ++j) {
+      moves[j] = moves[j] || JointMotion(tree, ws, static_cast<int>(j)) > kMoves;
+    }
+  }
+  return moves;
+}
+
+/// Free motions at q as velocities [nv, mobility].
+MatrixXd FreeMotions(const KinematicTree& tree, const NullSpace& space) {
+  return ColumnScale(tree).asDiagonal() * space.basis;
+}
+
+NullSpace SpaceAt(const KinematicTree& tree, const VectorXd& q) {
+  return FindNullSpace(DimensionlessLoopJacobian(tree, q), kRankTolerance);
+}
+
+MatrixXd Columns(const MatrixXd& A, const std::vector<int>& columns) {
+  MatrixXd B(A.rows(), static_cast<Eigen::Index>(columns.size()));
+  for (size_t k = 0; k < columns.size(); ++k) B.col(k) = A.col(columns[k]);
+  return B;
+}
+
+}  // namespace
+
+MatrixXd DimensionlessLoopJacobian(const KinematicTree& tree, const VectorXd& q) {
+  TreeWorkspace<double> ws(tree);
+  EvaluatePose(tree, q, &ws);
+  return LoopRowScale(tree).asDiagonal() * DenseLoopJacobian(tree, ws) *
+         ColumnScale(tree).asDiagonal();
+}
+
+Mobility AnalyseMobility(const KinematicTree& tree, const VectorXd& q) {
+  Mobility result;
+  result.gruebler = tree.nv - tree.rows;
+  NullSpace best = SpaceAt(tree, q);
+  const int rank_here = best.rank;
+  result.q_general = q;
+  for (const VectorXd& near : Neighbours(tree, q, FreeMotions(tree, best))) {
+    NullSpace space = SpaceAt(tree, near);
+    if (space.rank <= best.rank) continue;
+    best = std::move(space);
+    result.q_general = near;
+  }
+  result.rank = best.rank;
+  result.singular_here = rank_here < best.rank;
+  result.mobility = tree.nv - best.rank;
+  result.redundant = tree.rows - best.rank;
+  result.joint_moves = MovingJoints(tree, result.q_general, FreeMotions(tree, best));
+  return result;
+}
+
+CoordinatePartition PartitionForDrives(const KinematicTree& tree, const VectorXd& q_general,
+                                       const std::vector<int>& driven) {
+  const MatrixXd C = DimensionlessLoopJacobian(tree, q_general);
+  const NullSpace free = FindNullSpace(C, kRankTolerance);
+  MatrixXd driven_rows(driven.size(), free.basis.cols());
+  for (size_t k = 0; k < driven.size(); ++k) driven_rows.row(k) = free.basis.row(driven[k]);
+  const int controlled = FindNullSpace(driven_rows, kRankTolerance).rank;
+  if (controlled < static_cast<int>(driven.size())) {
+    std::string names;
+    for (int v : driven) names += (names.empty() ? "'" : ", '") + NameOfVelocity(tree, v) + "'";
+    throw std::invalid_argument(fmt::format(
+        "the drives at {} cannot all move as they like: the mechanism has mobility {} and they "
+        "control {} of it; drive fewer joints, or other ones",
+        names, free.basis.cols(), controlled));
+  }
+
+  const CoordinatePartition first = MakePartition(tree, driven, {});
+  const NullSpace loose = FindNullSpace(Columns(C, first.dependent), kRankTolerance);
+  if (loose.basis.cols() == 0) return first;
+  std::vector<int> idle;
+  for (int slot : MostIndependentRows(loose.basis, static_cast<int>(loose.basis.cols()))) {
+    idle.push_back(first.dependent[slot]);
+  }
+  return MakePartition(tree, driven, idle);
+}
+
+CoordinatePartition PartitionAtPose(const KinematicTree& tree, const VectorXd& q) {
+  const NullSpace free = SpaceAt(tree, q);
+  return MakePartition(tree, MostIndependentRows(free.basis, static_cast<int>(free.basis.cols())),
+                       {});
+}
+
+}  // namespace vmech

@@ -1,0 +1,190 @@
+#include "vmech/kinematics/motion_law.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace vmech {
+namespace {
+
+void RequireTable(const std::vector<double>& times, size_t values) {
+  if (times.empty()) throw std::invalid_argument("the table has no rows");
+  if (times.size() != values) {
+    throw std::invalid_argument(
+        fmt::format("the table has {} times and {} values", times.size(), values));
+  }
+  for (size_t i = 0; i < times.size(); ++i) {
+    if (!std::isfinite(times[i])) {
+      throw std::invalid_argument(fmt::format("row {}: the time is not a finite number", i + 1));
+    }
+    if (i > 0 && !(times[i] > times[i - 1])) {
+      throw std::invalid_argument(
+          fmt::format("row {}: the time {} does not come after {}", i + 1, times[i], times[i - 1]));
+    }
+  }
+}
+
+/// Second derivatives at the knots of a cubic spline with not-a-knot ends; four knots or more.
+std::vector<double> SplineCurvatures(const std::vector<double>& t, const std::vector<double>& y) {
+  const size_t n = t.size();
+  std::vector<double> h(n - 1), slope(n - 1);
+  for (size_t i = 0; i + 1 < n; ++i) {
+    h[i] = t[i + 1] - t[i];
+    slope[i] = (y[i + 1] - y[i]) / h[i];
+  }
+  // h[i-1] M[i-1] + 2 (h[i-1] + h[i]) M[i] + h[i] M[i+1] = 6 (slope[i] - slope[i-1]), with M[0] and
+  // M[n-1] eliminated by equal third derivatives on either side of the second and last but one
+  // knot.
+  std::vector<double> below(n), diagonal(n), above(n), right(n);
+  for (size_t i = 1; i + 1 < n; ++i) {
+    below[i] = h[i - 1];
+    diagonal[i] = 2 * (h[i - 1] + h[i]);
+    above[i] = h[i];
+    right[i] = 6 * (slope[i] - slope[i - 1]);
+  }
+  const double head = h[0] / h[1], tail = h[n - 2] / h[n - 3];
+  diagonal[1] += h[0] * (1 + head);
+  above[1] -= h[0] * head;
+  diagonal[n - 2] += h[n - 2] * (1 + tail);
+  below[n - 2] -= h[n - 2] * tail;
+  for (size_t i = 2; i + 1 < n; ++i) {
+    const double factor = below[i] / diagonal[i - 1];
+    diagonal[i] -= factor * above[i - 1];
+    right[i] -= factor * right[i - 1];
+  }
+  std::vector<double> M(n);
+  M[n - 2] = right[n - 2] / diagonal[n - 2];
+  for (size_t i = n - 2; i-- > 1;) M[i] = (right[i] - above[i] * M[i + 1]) / diagonal[i];
+  M[0] = (1 + head) * M[1] - head * M[2];
+  M[n - 1] = (1 + tail) * M[n - 2] - tail * M[n - 3];
+  return M;
+}
+
+std::vector<double> Curvatures(const std::vector<double>& t, const std::vector<double>& y) {
+  if (t.size() < 3) return std::vector<double>(t.size(), 0.0);
+  if (t.size() > 3) return SplineCurvatures(t, y);
+  const double bend =
+      ((y[2] - y[1]) / (t[2] - t[1]) - (y[1] - y[0]) / (t[1] - t[0])) / (t[2] - t[0]);
+  return std::vector<double>(3, 2 * bend);
+}
+
+/// Angular velocity and acceleration, in the moving frame, of exp(r(t)) from r, r', r'':
+///   w = J r',  J = 1 - A S + B S^2,  A = (1 - cos)/angle^2,  B = (angle - sin)/angle^3,  S = S(r)
+///   w' = J r'' - A' r x r' + B' r x (r x r') + B r' x (r x r')
+struct RotationRates {
+  Vector3d w, alpha;
+};
+
+RotationRates RatesOfRotationVector(const Vector3d& r, const Vector3d& rd, const Vector3d& rdd) {
+  constexpr double kSmall = 1e-2;  // [rad]; below, the next terms of the series are under 1e-12
+  const double x = r.norm(), xx = x * x;
+  double A, B, dA, dB;  // dA = (dA/dx)/x, likewise dB
+  if (x < kSmall) {
+    A = 1.0 / 2 - xx / 24 + xx * xx / 720;
+    B = 1.0 / 6 - xx / 120 + xx * xx / 5040;
+    dA = -1.0 / 12 + xx / 180;
+    dB = -1.0 / 60 + xx / 1260;
+  } else {
+    A = (1 - std::cos(x)) / xx;
+    B = (x - std::sin(x)) / (xx * x);
+    dA = (x * std::sin(x) - 2 * (1 - std::cos(x))) / (xx * xx);
+    dB = (3 * std::sin(x) - 2 * x - x * std::cos(x)) / (xx * xx * x);
+  }
+  const Vector3d r_rd = r.cross(rd);
+  const double stretch = r.dot(rd);
+  auto J = [&](const Vector3d& u) -> Vector3d {
+    return u - A * r.cross(u) + B * r.cross(r.cross(u));
+  };
+  return {J(rd), J(rdd) - dA * stretch * r_rd + dB * stretch * r.cross(r_rd) + B * rd.cross(r_rd)};
+}
+
+Matrix3d RotationOfVector(const Vector3d& r) {
+  const double angle = r.norm();
+  if (angle == 0) return Matrix3d::Identity();
+  return Eigen::AngleAxisd(angle, r / angle).toRotationMatrix();
+}
+
+}  // namespace
+
+MotionLaw MotionLaw::Uniform(double start, double speed, double acceleration) {
+  MotionLaw law;
+  law.pieces_.push_back({0, {start, speed, acceleration / 2, 0}});
+  return law;
+}
+
+MotionLaw MotionLaw::Table(std::vector<double> times, std::vector<double> values) {
+  RequireTable(times, values.size());
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (!std::isfinite(values[i])) {
+      throw std::invalid_argument(fmt::format("row {}: the value is not a finite number", i + 1));
+    }
+  }
+  MotionLaw law;
+  if (times.size() == 1) return Uniform(values[0], 0);
+  const std::vector<double> M = Curvatures(times, values);
+  for (size_t i = 0; i + 1 < times.size(); ++i) {
+    const double h = times[i + 1] - times[i];
+    const double slope = (values[i + 1] - values[i]) / h - h * (2 * M[i] + M[i + 1]) / 6;
+    law.pieces_.push_back({times[i], {values[i], slope, M[i] / 2, (M[i + 1] - M[i]) / (6 * h)}});
+  }
+  return law;
+}
+
+MotionSample MotionLaw::At(double t) const {
+  auto after = std::upper_bound(pieces_.begin(), pieces_.end(), t,
+                                [](double time, const Piece& piece) { return time < piece.t0; });
+  const Piece& piece = after == pieces_.begin() ? pieces_.front() : *(after - 1);
+  const double s = t - piece.t0;
+  const double* c = piece.c;
+  return {c[0] + s * (c[1] + s * (c[2] + s * c[3])), c[1] + s * (2 * c[2] + s * 3 * c[3]),
+          2 * c[2] + 6 * c[3] * s};
+}
+
+HandLaw HandLaw::Table(std::vector<double> times, const std::vector<Posed>& poses) {
+  RequireTable(times, poses.size());
+  HandLaw law;
+  law.R_W0_ = poses[0].R;
+  std::vector<std::vector<double>> p(3), r(3);
+  for (size_t i = 0; i < poses.size(); ++i) {
+    const Eigen::AngleAxisd turn(Matrix3d(poses[0].R.transpose() * poses[i].R));
+    constexpr double kTooFar = 0.99 * std::numbers::pi;  // the rotation vector jumps at pi
+    if (turn.angle() > kTooFar) {
+      throw std::invalid_argument(fmt::format(
+          "row {}: the orientation is {:.1f} degrees away from that of the first row; split the "
+          "table before 178 degrees",
+          i + 1, turn.angle() * 180 / std::numbers::pi));
+    }
+    const Vector3d rotation_vector = turn.angle() * turn.axis();
+    for (int k = 0; k < 3; ++k) {
+      p[k].push_back(poses[i].p[k]);
+      r[k].push_back(rotation_vector[k]);
+    }
+  }
+  for (int k = 0; k < 3; ++k) {
+    law.position_.push_back(MotionLaw::Table(times, p[k]));
+    law.rotation_vector_.push_back(MotionLaw::Table(times, r[k]));
+  }
+  return law;
+}
+
+HandSample HandLaw::At(double t) const {
+  Vector3d p, v, a, r, rd, rdd;
+  for (int k = 0; k < 3; ++k) {
+    const MotionSample s = position_[k].At(t);
+    const MotionSample u = rotation_vector_[k].At(t);
+    p[k] = s.position, v[k] = s.velocity, a[k] = s.acceleration;
+    r[k] = u.position, rd[k] = u.velocity, rdd[k] = u.acceleration;
+  }
+  HandSample hand;
+  hand.X_WH = {R_W0_ * RotationOfVector(r), p};
+  const RotationRates rates = RatesOfRotationVector(r, rd, rdd);
+  hand.V_WH << v, hand.X_WH.R * rates.w;
+  hand.A_WH << a, hand.X_WH.R * rates.alpha;
+  return hand;
+}
+
+}  // namespace vmech

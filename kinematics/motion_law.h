@@ -1,0 +1,61 @@
+#pragma once
+
+#include <vector>
+
+#include "vmech/mechanisms/pose.h"
+
+namespace vmech {
+
+/// Position, velocity and acceleration of a coordinate at one time.
+struct MotionSample {
+  double position = 0;
+  double velocity = 0;
+  double acceleration = 0;
+};
+
+/// How a driven coordinate moves in time: at constant acceleration, or through a table by the cubic
+/// spline with not-a-knot ends (twice continuously differentiable; a table of one row stands still,
+/// of two moves at constant speed, of three on a parabola). SI units and radians.
+class MotionLaw {
+ public:
+  /// position = start + speed t + acceleration t^2 / 2.
+  static MotionLaw Uniform(double start, double speed, double acceleration = 0);
+  /// @throws std::invalid_argument if the lengths differ, the table is empty, a value is not finite
+  ///         or the times do not increase; the message names the row (counted from 1).
+  static MotionLaw Table(std::vector<double> times, std::vector<double> values);
+
+  MotionSample At(double t) const;
+
+ private:
+  struct Piece {
+    double t0;
+    double c[4];  ///< position = sum c_k (t - t0)^k
+  };
+  std::vector<Piece> pieces_;
+};
+
+/// Pose, velocity and acceleration of a hand-held frame in the world.
+struct HandSample {
+  Posed X_WH;
+  Vector6d V_WH;  ///< [v; w]
+  Vector6d A_WH;  ///< [a; alpha]
+};
+
+/// How the hand moves: a cubic spline through positions, and one through the rotation vectors
+/// between consecutive orientations, accumulated in the frame of the first (smooth, and exact at
+/// the rows; meant for tables whose total turn stays below pi of the first row's orientation).
+class HandLaw {
+ public:
+  /// @throws std::invalid_argument as MotionLaw::Table, or for an orientation that is pi or more
+  ///         away from the first.
+  static HandLaw Table(std::vector<double> times, const std::vector<Posed>& poses);
+
+  HandSample At(double t) const;
+
+ private:
+  Matrix3d R_W0_ = Matrix3d::Identity();
+  std::vector<MotionLaw> position_;
+  std::vector<MotionLaw> rotation_vector_;
+};
+
+}  // namespace vmech

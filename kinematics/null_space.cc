@@ -1,0 +1,31 @@
+#include "vmech/kinematics/null_space.h"
+
+#include <Eigen/QR>
+#include <cmath>
+
+namespace vmech {
+
+NullSpace FindNullSpace(const MatrixXd& A, double tolerance) {
+  const Eigen::Index n = A.cols();
+  if (A.rows() == 0 || n == 0) return {0, MatrixXd::Identity(n, n), 0};
+  Eigen::ColPivHouseholderQR<MatrixXd> qr(A.transpose());
+  qr.setThreshold(tolerance);
+  NullSpace space;
+  space.rank = static_cast<int>(qr.rank());
+  const MatrixXd Q = qr.householderQ() * MatrixXd::Identity(n, n);
+  space.basis = Q.rightCols(n - space.rank);
+  if (space.rank > 0) {
+    space.smallest_kept =
+        std::abs(qr.matrixR()(space.rank - 1, space.rank - 1) / qr.matrixR()(0, 0));
+  }
+  return space;
+}
+
+std::vector<int> MostIndependentRows(const MatrixXd& A, int count) {
+  const Eigen::ColPivHouseholderQR<MatrixXd> qr(A.transpose());
+  std::vector<int> rows;
+  for (int i = 0; i < count; ++i) rows.push_back(qr.colsPermutation().indices()[i]);
+  return rows;
+}
+
+}  // namespace vmech
