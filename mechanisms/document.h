@@ -1,0 +1,160 @@
+#pragma once
+
+#include <filesystem>
+#include <initializer_list>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "vmech/mechanisms/pose.h"
+
+namespace vmech {
+
+/// The layer under every file that vmech reads: YAML as people write it, JSON as programs write it
+/// (which is YAML too), as a tree of nodes that know where they stand. A reader takes typed values
+/// out of it; whatever is wrong is collected, and thrown in one go by `Document::ThrowErrors`.
+
+/// One thing that is wrong with a file.
+struct FileError {
+  std::string file;
+  int line = 0;         ///< from 1; 0 if the file as a whole is meant
+  int column = 0;       ///< from 1
+  std::string path;     ///< place in the document, as in "joints.main.start[1]"; may be empty
+  std::string message;  ///< what is wrong and what to do
+};
+
+/// "file:line:column: path: message".
+std::string ToString(const FileError& error);
+
+/// Everything that is wrong with one or several files. what() has a line for each.
+class FileErrors : public std::runtime_error {
+ public:
+  explicit FileErrors(std::vector<FileError> errors);
+  FileErrors(std::string file, std::string message);
+  const std::vector<FileError>& errors() const { return errors_; }
+
+ private:
+  std::vector<FileError> errors_;
+};
+
+/// The whole of a text file. @throws FileErrors if it cannot be read or exceeds kMaxFileBytes.
+std::string ReadTextFile(const std::filesystem::path& path);
+
+constexpr size_t kMaxFileBytes = size_t{8} << 20;
+constexpr int kMaxNesting = 64;      ///< levels of lists and maps in a file
+constexpr double kMaxNumber = 1e30;  ///< magnitude of a number in a file; beyond it is a slip
+
+/// "; did you mean 'crank'?" if a candidate is near the word, else empty.
+std::string DidYouMean(std::string_view word, std::span<const std::string> candidates);
+
+/// A text from a file as it may be shown in a message: in quotes, short, without control
+/// characters.
+std::string Quoted(std::string_view text);
+
+class Document;
+
+/// A value in a document, or an absent one. Handles are cheap to copy and live as long as their
+/// document. The typed getters return the fallback if the node is absent; if it is present but not
+/// of the asked kind they report that and return the fallback.
+class Node {
+ public:
+  enum class Kind { kAbsent, kNull, kScalar, kList, kMap };
+
+  Node() = default;
+  explicit operator bool() const { return kind() != Kind::kAbsent; }
+  Kind kind() const;
+  /// The key under which the node stands in a map, else empty.
+  const std::string& key() const;
+  std::string path() const;
+  int line() const;
+  int column() const;
+
+  /// Reports what is wrong with this value, at the value or at its key.
+  void Error(std::string message) const;
+  void KeyError(std::string message) const;
+
+  /// The value under a key of a map; absent if there is none.
+  Node operator[](std::string_view key) const;
+
+  /// True if the node is a map. Reports required keys that are missing and keys that are neither
+  /// required nor optional, save those that begin with "x-", which are everybody's own.
+  bool CheckKeys(std::initializer_list<std::string_view> required,
+                 std::initializer_list<std::string_view> optional = {}) const;
+
+  /// The entries of a list or of a map with free keys, in the order of the file.
+  std::vector<Node> List() const;
+  std::vector<Node> Map() const;
+
+  /// Reports a key that cannot name a part: empty, longer than 100 bytes, with a blank at an end,
+  /// or with '/', ',', '"', '\' or a control character in it.
+  void CheckName() const;
+
+  double Number(double fallback = 0) const;
+  double Positive(double fallback = 1) const;
+  double NonNegative(double fallback = 0) const;
+  int Integer(int fallback, int lowest, int highest) const;
+  std::string Text(std::string fallback = {}) const;
+  Vector3d Vector3(const Vector3d& fallback = Vector3d::Zero()) const;
+  /// Exactly `count` numbers; for count = 1 a bare number will do. Empty if absent or wrong.
+  std::vector<double> Numbers(int count) const;
+  /// One of a set of words.
+  template <typename Enum>
+  Enum Word(std::initializer_list<std::pair<std::string_view, Enum>> words, Enum fallback) const {
+    std::vector<std::string> names;
+    for (const auto& word : words) names.emplace_back(word.first);
+    const int index = WordIndex(names);
+    return index < 0 ? fallback : words.begin()[index].second;
+  }
+
+ private:
+  friend class Document;
+  Node(Document* document, int index) : document_(document), index_(index) {}
+  int WordIndex(std::span<const std::string> words) const;
+  bool Expect(Kind kind, std::string_view what) const;
+
+  Document* document_ = nullptr;
+  int index_ = -1;
+};
+
+class Document {
+ public:
+  /// Parses a text; `name` stands for it in messages. Not accepted: text that is not UTF-8 or has
+  /// control characters, YAML's anchors, aliases and tags, keys that are not words, duplicate keys,
+  /// more than kMaxNesting levels, more than one document. @throws FileErrors
+  Document(std::string_view text, std::string name);
+  Document(const Document&) = delete;
+  Document& operator=(const Document&) = delete;
+
+  Node root() { return {this, 0}; }
+  const std::string& name() const { return name_; }
+
+  /// Adds to what is wrong. @throws FileErrors when that becomes too much to read.
+  void Report(FileError error);
+  bool ok() const { return errors_.empty(); }
+  /// @throws FileErrors with everything reported so far, in the order of the lines; or returns.
+  void ThrowErrors();
+
+  /// A node as it is stored; the children of a list or map are indices.
+  struct Item {
+    Node::Kind kind = Node::Kind::kNull;
+    bool plain = true;      ///< a scalar without quotes: a number if it looks like one
+    std::string text, key;  ///< of a scalar; of an entry of a map
+    int line = 0, column = 0, key_line = 0, key_column = 0;
+    int parent = -1, place = 0;  ///< `place` is the position in the parent
+    std::vector<int> children;
+  };
+
+ private:
+  friend class Node;
+  void CheckDuplicateKeys();
+
+  std::string name_;
+  std::vector<Item> items_;
+  std::vector<FileError> errors_;
+};
+
+}  // namespace vmech

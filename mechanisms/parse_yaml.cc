@@ -1,0 +1,174 @@
+#include "vmech/mechanisms/parse_yaml.h"
+
+#include <fmt/format.h>
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/mark.h>
+#include <yaml-cpp/parser.h>
+
+#include <sstream>
+
+namespace vmech {
+namespace {
+
+using Item = Document::Item;
+using Kind = Node::Kind;
+
+/// Length of the UTF-8 sequence at the head of the text; 0 if it is not one (RFC 3629).
+int Utf8Length(std::string_view text) {
+  const auto byte = [&](size_t i) {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
+  };
+  const auto continues = [&](size_t i) { return (byte(i) & 0xC0) == 0x80; };
+  const unsigned head = byte(0);
+  if (head < 0x80) return 1;
+  if (head >= 0xC2 && head < 0xE0) return continues(1) ? 2 : 0;
+  if (head >= 0xE0 && head < 0xF0) {
+    const bool overlong = head == 0xE0 && byte(1) < 0xA0;
+    const bool surrogate = head == 0xED && byte(1) >= 0xA0;
+    return !overlong && !surrogate && continues(1) && continues(2) ? 3 : 0;
+  }
+  if (head >= 0xF0 && head < 0xF5) {
+    const bool overlong = head == 0xF0 && byte(1) < 0x90;
+    const bool beyond = head == 0xF4 && byte(1) >= 0x90;
+    return !overlong && !beyond && continues(1) && continues(2) && continues(3) ? 4 : 0;
+  }
+  return 0;
+}
+
+/// yaml-cpp takes control characters for its own marks and does not check its input: do it here.
+void CheckCharacters(std::string_view text, const std::string& name) {
+  int line = 1, column = 1;
+  for (size_t i = 0; i < text.size();) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    const int length = Utf8Length(text.substr(i));
+    const bool control = (c < 0x20 && c != '\n' && c != '\r' && c != '\t') || c == 0x7F;
+    if (length == 0 || control) {
+      const char* what = control ? "control character" : "byte that is not UTF-8 text,";
+      throw FileErrors({{name, line, column, "", fmt::format("{} 0x{:02X}", what, c)}});
+    }
+    i += length;
+    ++column;
+    if (c == '\n') ++line, column = 1;
+  }
+}
+
+/// Builds the items from yaml-cpp's events. Unlike its node tree, the events keep the place of
+/// every value, the order of keys and the difference between 1.0 and "1.0".
+class ItemBuilder : public YAML::EventHandler {
+ public:
+  explicit ItemBuilder(const std::string& name) : name_(name) {}
+  std::vector<Item> items;
+
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    if (!items.empty()) Fail(mark, "a second document begins here; a file holds one");
+  }
+  void OnDocumentEnd() override {}
+
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    RefuseDecoration(mark, "?", anchor);
+    if (AwaitsKey()) Fail(mark, "a key is missing before ':'");
+    Add(mark, Kind::kNull);
+  }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    RefuseDecoration(mark, "?", anchor);
+  }
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& value) override {
+    RefuseDecoration(mark, tag, anchor);
+    if (AwaitsKey()) {
+      key_ = value;
+      key_mark_ = mark;
+      has_key_ = true;
+      return;
+    }
+    Item& item = Add(mark, Kind::kScalar);
+    item.text = value;
+    item.plain = tag == "?";
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value) override {
+    Open(mark, tag, anchor, Kind::kList);
+  }
+  void OnSequenceEnd() override { open_.pop_back(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value) override {
+    Open(mark, tag, anchor, Kind::kMap);
+  }
+  void OnMapEnd() override { open_.pop_back(); }
+
+ private:
+  [[noreturn]] void Fail(const YAML::Mark& mark, std::string message) const {
+    throw FileErrors({{name_, mark.line + 1, mark.column + 1, "", std::move(message)}});
+  }
+
+  void RefuseDecoration(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor) {
+    if (anchor != YAML::NullAnchor) {
+      Fail(mark, "YAML anchors (&) and aliases (*) are not used here; write the value out");
+    }
+    if (tag != "?" && tag != "!") Fail(mark, "YAML tags (!) are not used here; leave it out");
+  }
+
+  bool AwaitsKey() const {
+    return !open_.empty() && items[open_.back()].kind == Kind::kMap && !has_key_;
+  }
+
+  void Open(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, Kind kind) {
+    RefuseDecoration(mark, tag, anchor);
+    if (AwaitsKey()) Fail(mark, "a key must be a word, not a list or a map");
+    if (static_cast<int>(open_.size()) == kMaxNesting) {
+      Fail(mark, fmt::format("lists and maps are nested more than {} deep", kMaxNesting));
+    }
+    Add(mark, kind);
+    open_.push_back(static_cast<int>(items.size()) - 1);
+  }
+
+  Item& Add(const YAML::Mark& mark, Kind kind) {
+    const int index = static_cast<int>(items.size());
+    Item item;
+    item.kind = kind;
+    item.line = item.key_line = mark.line + 1;
+    item.column = item.key_column = mark.column + 1;
+    if (!open_.empty()) {
+      Item& parent = items[open_.back()];
+      item.parent = open_.back();
+      item.place = static_cast<int>(parent.children.size());
+      parent.children.push_back(index);
+    }
+    if (has_key_) {
+      item.key = std::move(key_);
+      item.key_line = key_mark_.line + 1;
+      item.key_column = key_mark_.column + 1;
+      has_key_ = false;
+    }
+    return items.emplace_back(std::move(item));
+  }
+
+  const std::string& name_;
+  std::vector<int> open_;
+  std::string key_;
+  YAML::Mark key_mark_;
+  bool has_key_ = false;
+};
+
+}  // namespace
+
+std::vector<Item> ParseYaml(std::string_view text, const std::string& name) {
+  if (text.size() > kMaxFileBytes) {
+    throw FileErrors(name, fmt::format("larger than {} MB", kMaxFileBytes >> 20));
+  }
+  CheckCharacters(text, name);
+  std::istringstream stream{std::string(text)};
+  ItemBuilder builder(name);
+  try {
+    YAML::Parser parser(stream);
+    while (parser.HandleNextDocument(builder)) {
+    }
+  } catch (const YAML::Exception& error) {
+    throw FileErrors({{name, error.mark.line + 1, error.mark.column + 1, "", error.msg}});
+  }
+  if (builder.items.empty()) throw FileErrors(name, "the file is empty");
+  return std::move(builder.items);
+}
+
+}  // namespace vmech

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/mechanism.h"
+#include "vmech/mechanisms/units.h"
+
+namespace vmech {
+
+/// The parts of a file that describe one link. Each reports what is wrong at its node.
+
+/// A frame from the keys `origin`, `z`, `x` and `y` of a map; other keys are not looked at.
+Posed ReadFrame(const Node& map, const Units& units);
+
+/// An entry of `links`: mass, center_of_gravity, inertia, anchors.
+Link ReadLink(const Node& node, const Units& units);
+
+}  // namespace vmech
