@@ -139,6 +139,7 @@ class ItemBuilder : public YAML::EventHandler {
       item.key = std::move(key_);
       item.key_line = key_mark_.line + 1;
       item.key_column = key_mark_.column + 1;
+      if (kind == Kind::kNull) item.line = item.key_line, item.column = item.key_column;
       has_key_ = false;
     }
     return items.emplace_back(std::move(item));

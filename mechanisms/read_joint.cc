@@ -95,9 +95,16 @@ void ReadLimitPair(const Node& node, double unit, double* lower, double* upper) 
     if (node.kind() == Node::Kind::kList) node.Error("expected a pair [lower, upper]");
     return;
   }
-  if (pair[0].kind() != Node::Kind::kNull) *lower = unit * pair[0].Number();
-  if (pair[1].kind() != Node::Kind::kNull) *upper = unit * pair[1].Number();
-  if (!(*lower < *upper)) node.Error("the lower limit is not below the upper one");
+  double bounds[] = {*lower, *upper};
+  for (int i = 0; i < 2; ++i) {
+    if (pair[i].kind() != Node::Kind::kNull) bounds[i] = unit * pair[i].Number();
+  }
+  if (!(bounds[0] < bounds[1])) {
+    node.Error("the lower limit is not below the upper one");
+    return;
+  }
+  *lower = bounds[0];
+  *upper = bounds[1];
 }
 
 /// [lower, upper], or for several freedoms a list of such pairs.

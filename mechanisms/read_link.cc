@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <limits>
+
 #include "vmech/mechanisms/mass_properties.h"
 
 namespace vmech {
 namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 enum class InertiaPoint { kCenterOfGravity, kOrigin };
 enum class OffDiagonal { kMatrixElements, kProductsOfInertia };
@@ -42,7 +46,8 @@ Matrix3d ReadAxes(const Node& map) {
   return R;
 }
 
-/// The inertia matrix as it is written, in the axes of the link, about the point it is written for.
+/// The inertia matrix as it is written, in the axes of the link, about the point it is written for;
+/// not finite if a moment is missing or wrong.
 Matrix3d ReadInertiaMatrix(const Node& node, const Units& units) {
   if (const Node principal = node["principal"]) {
     for (const char* key : {"xx", "yy", "zz", "xy", "xz", "yz", "off_diagonal"}) {
@@ -50,7 +55,7 @@ Matrix3d ReadInertiaMatrix(const Node& node, const Units& units) {
     }
     const Node axes = node["axes"];
     if (axes) axes.CheckKeys({"z", "x"}, {"y"});
-    const Vector3d moments = units.inertia * principal.Vector3();
+    const Vector3d moments = units.inertia * principal.Vector3(Vector3d::Constant(kUnknown));
     return RotatedInertia(ReadAxes(axes), moments.asDiagonal());
   }
   if (const Node axes = node["axes"]) axes.KeyError("used with 'principal' only");
@@ -62,10 +67,11 @@ Matrix3d ReadInertiaMatrix(const Node& node, const Units& units) {
        {"products_of_inertia", OffDiagonal::kProductsOfInertia}},
       OffDiagonal::kMatrixElements);
   const double sign = convention == OffDiagonal::kMatrixElements ? 1 : -1;
-  return units.inertia * InertiaFromElements(node["xx"].Number(), node["yy"].Number(),
-                                             node["zz"].Number(), sign * node["xy"].Number(),
-                                             sign * node["xz"].Number(),
-                                             sign * node["yz"].Number());
+  const auto moment = [&](const char* key) { return node[key].Number(kUnknown); };
+  const auto off_diagonal = [&](const char* key) { return sign * node[key].Number(); };
+  return units.inertia * InertiaFromElements(moment("xx"), moment("yy"), moment("zz"),
+                                             off_diagonal("xy"), off_diagonal("xz"),
+                                             off_diagonal("yz"));
 }
 
 Matrix3d ReadInertia(const Node& node, const Units& units, double mass, const Vector3d& p_LoLcm) {
@@ -74,6 +80,7 @@ Matrix3d ReadInertia(const Node& node, const Units& units, double mass, const Ve
     return Matrix3d::Zero();
   }
   const Matrix3d written = ReadInertiaMatrix(node, units);
+  if (!written.allFinite()) return Matrix3d::Zero();
   const InertiaPoint about = node["about"].Word<InertiaPoint>(
       {{"center_of_gravity", InertiaPoint::kCenterOfGravity}, {"origin", InertiaPoint::kOrigin}},
       InertiaPoint::kCenterOfGravity);

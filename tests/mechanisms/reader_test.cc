@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "slider_crank.h"
@@ -48,6 +50,126 @@ TEST(Reader, ReadsGraspsAndCuts) {
   EXPECT_EQ(mechanism.grasps[0].link, FindLink(mechanism, "coupler"));
   EXPECT_NEAR(mechanism.grasps[0].X_LG.p.x(), 0.1, kRounding);
   EXPECT_EQ(mechanism.preferred_cuts, std::vector<int>{2});
+}
+
+/// A file with one link besides the frame, on a joint, from the lines of both.
+Mechanism Parse(const std::string& link, const std::string& joint, const std::string& units = "") {
+  return ParseMechanism("{vmech: \"1.0\", gravity: [0, 0, 0], ground: frame, units: {" + units +
+                            "}, links: {frame: {anchors: {a: {}}}, body: {anchors: {a: {}}, " +
+                            link + "}}, joints: {j: {connects: [frame/a, body/a], " + joint + "}}}",
+                        "body.yaml");
+}
+
+Matrix3d InertiaOf(const std::string& mass_properties) {
+  return Parse(mass_properties, "type: weld").links[1].mass_properties.I_Lcm;
+}
+
+Joint JointOf(const std::string& joint, const std::string& units = "") {
+  return Parse("mass: 1", joint, units).joints[0];
+}
+
+TEST(Reader, GivesTheSameMechanismInMillimetresAndInMetres) {
+  const Mechanism in_mm = ParseMechanism(kSliderCrank, "mm.yaml");
+  const Mechanism in_m = ParseMechanism(kSliderCrankInSi, "si.yaml");
+  ASSERT_EQ(in_mm.links.size(), in_m.links.size());
+  for (size_t i = 0; i < in_m.links.size(); ++i) {
+    const MassProperties &a = in_mm.links[i].mass_properties, &b = in_m.links[i].mass_properties;
+    EXPECT_EQ(a.mass, b.mass);
+    EXPECT_TRUE(a.p_LoLcm.isApprox(b.p_LoLcm, kRounding));
+    EXPECT_TRUE(a.I_Lcm.isApprox(b.I_Lcm, kRounding));
+    for (size_t k = 0; k < in_m.links[i].anchors.size(); ++k) {
+      const Posed &X = in_mm.links[i].anchors[k].X_LA, &Y = in_m.links[i].anchors[k].X_LA;
+      EXPECT_EQ(X.R, Y.R);
+      EXPECT_TRUE(X.p.isApprox(Y.p, kRounding));
+    }
+  }
+  for (size_t i = 0; i < in_m.joints.size(); ++i) {
+    const Joint &a = in_mm.joints[i], &b = in_m.joints[i];
+    EXPECT_NEAR(a.start[0], b.start[0], std::abs(b.start[0]) * kRounding);
+    EXPECT_NEAR(a.passive[0].rest, b.passive[0].rest, kRounding);
+    EXPECT_EQ(a.passive[0].stiffness, b.passive[0].stiffness);
+    EXPECT_EQ(a.passive[0].viscous, b.passive[0].viscous);
+  }
+}
+
+TEST(Reader, TakesTheMatrixElementsOrTheProductsOfInertia) {
+  const Matrix3d elements = InertiaOf("mass: 1, inertia: {xx: 2, yy: 3, zz: 4, xy: -0.1, yz: 0.2}");
+  EXPECT_EQ(elements(0, 1), -0.1);
+  EXPECT_EQ(elements(2, 1), 0.2);
+  EXPECT_EQ(elements, InertiaOf("mass: 1, inertia: {off_diagonal: products_of_inertia,"
+                                " xx: 2, yy: 3, zz: 4, xy: 0.1, yz: -0.2}"));
+}
+
+TEST(Reader, MovesAnInertiaFromTheOriginToTheCenterOfGravity) {
+  const Matrix3d I = InertiaOf(
+      "mass: 2, center_of_gravity: [0.5, 0, 0], inertia: {about: origin, xx: 1, yy: 1.5, zz: 2.5}");
+  EXPECT_TRUE(I.isApprox(Matrix3d(Vector3d(1, 1, 2).asDiagonal()), kRounding));
+}
+
+TEST(Reader, TurnsPrincipalMomentsIntoTheAxesOfTheLink) {
+  const Matrix3d I = InertiaOf(
+      "mass: 1, inertia: {principal: [2, 3, 4], axes: {z: [1, 0, 0], x: [0, 1, 0], y: [0, 0, 1]}}");
+  EXPECT_TRUE(I.isApprox(Matrix3d(Vector3d(4, 2, 3).asDiagonal()), kRounding));
+}
+
+TEST(Reader, TakesALinkWithoutInertiaForAPoint) {
+  EXPECT_TRUE(InertiaOf("mass: 3, center_of_gravity: [1, 2, 3]").isZero(0));
+}
+
+TEST(Reader, TakesMassesFromZeroInAFileForKinematicsOnly) {
+  EXPECT_EQ(Parse("description: no mass at all", "type: revolute").links[1].mass_properties.mass,
+            0);
+}
+
+TEST(Reader, StartsABallAtARotationVectorOrAQuaternion) {
+  const Joint vector = JointOf("type: spherical, start: [0, 0, 90]", "angle: deg");
+  EXPECT_NEAR(vector.start[0], std::sqrt(0.5), kRounding);
+  EXPECT_NEAR(vector.start[3], std::sqrt(0.5), kRounding);
+  const Joint quaternion = JointOf("type: spherical, start: [0.5, 0.5, -0.5, 0.5]");
+  EXPECT_EQ(quaternion.start, (std::vector<double>{0.5, 0.5, -0.5, 0.5}));
+  EXPECT_EQ(JointOf("type: spherical, start: [0, 0, 0]").start,
+            ZeroCoordinates(JointType::kSpherical));
+}
+
+TEST(Reader, TakesThePitchOfAScrewPerTurn) {
+  const Joint screw = JointOf("type: screw, pitch: 5, start: 180", "length: mm, angle: deg");
+  EXPECT_NEAR(screw.pitch * 2 * std::numbers::pi, 0.005, 0.005 * kRounding);
+  EXPECT_NEAR(screw.start[0], std::numbers::pi, 4 * kRounding);
+}
+
+TEST(Reader, ConvertsEachFreedomByItsKind) {
+  const Joint planar = JointOf(
+      "type: planar, start: [10, 20, 30], limits: [[0, 100], null, [null, 90]],"
+      " viscous: [1, 2, 3], coulomb: [4, 5, 6],"
+      " spring: {stiffness: [7, 8, 9], rest: [1, 2, 3]}, friction: {coefficient: 0.1, radius: 4}",
+      "length: mm, angle: deg, stiffness: N/mm, torque: N mm");
+  EXPECT_NEAR(planar.start[1], 0.02, kRounding);
+  EXPECT_NEAR(planar.start[2], 30 * kDegree, kRounding);
+  EXPECT_NEAR(planar.upper[0], 0.1, kRounding);
+  EXPECT_EQ(planar.lower[1], -std::numeric_limits<double>::infinity());
+  EXPECT_EQ(planar.lower[2], -std::numeric_limits<double>::infinity());
+  EXPECT_NEAR(planar.upper[2], 90 * kDegree, 2 * kRounding);
+  EXPECT_EQ(planar.passive[1].viscous, 2);
+  EXPECT_EQ(planar.passive[0].coulomb, 4);
+  EXPECT_NEAR(planar.passive[2].coulomb, 0.006, kRounding);
+  EXPECT_EQ(planar.passive[1].stiffness, 8000);
+  EXPECT_EQ(planar.passive[2].stiffness, 9);
+  EXPECT_NEAR(planar.passive[2].rest, 3 * kDegree, kRounding);
+  EXPECT_NEAR(planar.load_friction.radius, 0.004, kRounding);
+}
+
+TEST(Reader, MakesTheXAxisSquareToTheZAxis) {
+  const Mechanism mechanism = Parse("x-note: {z: 1}", "type: weld");
+  EXPECT_TRUE(mechanism.anchor(mechanism.joints[0].first).X_LA.R.isIdentity(0));
+  const Mechanism oblique = ParseMechanism(
+      "{vmech: \"1.0\", gravity: [0, 0, 0], ground: a, links: {a: {anchors: "
+      "{f: {z: [0, 0, 3], x: [2, 0, 2]}}}}, joints: {}}",
+      "oblique.yaml");
+  EXPECT_TRUE(oblique.links[0].anchors[0].X_LA.R.isApprox(Matrix3d::Identity(), kRounding));
+}
+
+TEST(Reader, NamesAMechanismAfterItsFileIfItHasNoName) {
+  EXPECT_EQ(Parse("mass: 1", "type: weld").name, "body");
 }
 
 }  // namespace
