@@ -7,6 +7,7 @@ option(VMECH_LINT "run clang-format, clang-tidy and the text rules as tests"
        ${PROJECT_IS_TOP_LEVEL})
 option(VMECH_WARNINGS_AS_ERRORS "treat warnings as errors" OFF)
 option(VMECH_FORBID_MALLOC "make Eigen assert on allocations where they are forbidden" OFF)
+option(VMECH_BUILD_FUZZERS "build the fuzz targets; needs clang" OFF)
 set(VMECH_SANITIZE "" CACHE STRING "sanitizers, for example address,undefined")
 set(VMECH_ARCH "x86-64-v3" CACHE STRING
     "-march of the library; empty for the compiler's own choice")
@@ -35,6 +36,9 @@ if(VMECH_SANITIZE)
   target_compile_options(vmech_settings INTERFACE -fsanitize=${VMECH_SANITIZE}
                          -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(vmech_settings INTERFACE -fsanitize=${VMECH_SANITIZE})
+endif()
+if(VMECH_BUILD_FUZZERS)
+  target_compile_options(vmech_settings INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 if(VMECH_FORBID_MALLOC)
   target_compile_definitions(vmech_settings INTERFACE EIGEN_RUNTIME_NO_MALLOC)

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <numbers>
 
@@ -166,6 +167,17 @@ TEST(Reader, MakesTheXAxisSquareToTheZAxis) {
       "{f: {z: [0, 0, 3], x: [2, 0, 2]}}}}, joints: {}}",
       "oblique.yaml");
   EXPECT_TRUE(oblique.links[0].anchors[0].X_LA.R.isApprox(Matrix3d::Identity(), kRounding));
+}
+
+TEST(Reader, ReadsEveryExample) {
+  int count = 0;
+  for (const auto& file : std::filesystem::directory_iterator(VMECH_EXAMPLES)) {
+    const std::string text = file.path().extension() == ".yaml" ? ReadTextFile(file.path()) : "";
+    if (text.find("\nvmech: ") == text.npos) continue;
+    EXPECT_NO_THROW(ReadMechanism(file.path())) << file.path();
+    ++count;
+  }
+  EXPECT_GE(count, 13);
 }
 
 TEST(Reader, NamesAMechanismAfterItsFileIfItHasNoName) {
