@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <fstream>
 #include <numeric>
+#include <tuple>
 
 #include "vmech/mechanisms/parse_yaml.h"
 
@@ -111,20 +113,32 @@ FileErrors::FileErrors(std::vector<FileError> errors)
 FileErrors::FileErrors(std::string file, std::string message)
     : FileErrors(std::vector<FileError>{{std::move(file), 0, 0, "", std::move(message)}}) {}
 
-std::string ReadTextFile(const std::filesystem::path& path) {
+std::string ReadTextFile(const std::filesystem::path& path, size_t max_bytes) {
   std::ifstream stream(path, std::ios::binary);
   std::error_code ignored;
   if (!stream || std::filesystem::is_directory(path, ignored)) {
     throw FileErrors(path.string(), "cannot be opened as a file");
   }
-  std::string text(kMaxFileBytes + 1, '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<size_t>(stream.gcount()));
-  if (text.size() > kMaxFileBytes) {
-    throw FileErrors(path.string(), fmt::format("larger than {} MB", kMaxFileBytes >> 20));
-  }
+  std::string text;
+  std::array<char, 1 << 16> chunk;
+  do {
+    stream.read(chunk.data(), chunk.size());
+    text.append(chunk.data(), static_cast<size_t>(stream.gcount()));
+  } while (stream && text.size() <= max_bytes);
   if (stream.bad()) throw FileErrors(path.string(), "cannot be read");
+  if (text.size() > max_bytes) {
+    throw FileErrors(path.string(), fmt::format("larger than {} MB", max_bytes >> 20));
+  }
   return text;
+}
+
+std::optional<double> ParseNumber(std::string_view text) {
+  if (!LooksLikeNumber(text)) return {};
+  if (text[0] == '+') text.remove_prefix(1);
+  double value = 0;
+  const auto status = std::from_chars(text.data(), text.data() + text.size(), value).ec;
+  if (status != std::errc() || !(std::abs(value) <= kMaxNumber)) return {};
+  return value;
 }
 
 std::string DidYouMean(std::string_view word, std::span<const std::string> candidates) {
@@ -183,9 +197,11 @@ void Document::Report(FileError error) {
 
 void Document::ThrowErrors() {
   if (errors_.empty()) return;
-  std::stable_sort(errors_.begin(), errors_.end(), [](const FileError& a, const FileError& b) {
-    const auto last = [](const FileError& e) { return e.line == 0; };
-    return std::tuple(last(a), a.line, a.column) < std::tuple(last(b), b.line, b.column);
+  std::stable_sort(errors_.begin(), errors_.end(), [&](const FileError& a, const FileError& b) {
+    const auto order = [&](const FileError& e) {  // other files last, a file as a whole after it
+      return std::tuple(e.file != name_, e.file, e.line == 0, e.line, e.column);
+    };
+    return order(a) < order(b);
   });
   throw FileErrors(errors_);
 }
@@ -294,23 +310,18 @@ void Node::CheckName() const {
 double Node::Number(double fallback) const {
   if (!Expect(Kind::kScalar, "a number")) return fallback;
   const Document::Item& item = document_->items_[index_];
+  if (const std::optional<double> value = ParseNumber(item.text); value && item.plain) {
+    return *value;
+  }
   if (item.plain && IsNotFinite(item.text)) {
     Error("expected a finite number, not " + Quoted(item.text));
-    return fallback;
-  }
-  if (!item.plain || !LooksLikeNumber(item.text)) {
-    Error("expected a number, not " + Describe(item));
-    return fallback;
-  }
-  const char* begin = item.text.data() + (item.text[0] == '+' ? 1 : 0);
-  double value = 0;
-  const auto [end, status] = std::from_chars(begin, item.text.data() + item.text.size(), value);
-  if (status != std::errc() || !(std::abs(value) <= kMaxNumber)) {
+  } else if (item.plain && LooksLikeNumber(item.text)) {
     Error(
         fmt::format("{} is beyond the range of numbers here, {:g}", Quoted(item.text), kMaxNumber));
-    return fallback;
+  } else {
+    Error("expected a number, not " + Describe(item));
   }
-  return value;
+  return fallback;
 }
 
 double Node::Positive(double fallback) const {

@@ -41,12 +41,17 @@ class FileErrors : public std::runtime_error {
   std::vector<FileError> errors_;
 };
 
-/// The whole of a text file. @throws FileErrors if it cannot be read or exceeds kMaxFileBytes.
-std::string ReadTextFile(const std::filesystem::path& path);
-
 constexpr size_t kMaxFileBytes = size_t{8} << 20;
 constexpr int kMaxNesting = 64;      ///< levels of lists and maps in a file
 constexpr double kMaxNumber = 1e30;  ///< magnitude of a number in a file; beyond it is a slip
+
+/// The whole of a text file. @throws FileErrors if it cannot be read or is larger than allowed.
+std::string ReadTextFile(const std::filesystem::path& path, size_t max_bytes = kMaxFileBytes);
+
+/// A decimal number as in JSON or YAML 1.2: sign, digits, point, exponent, nothing after it. None
+/// if the text is anything else: with a leading zero (some readers take it for octal), not finite,
+/// or beyond kMaxNumber.
+std::optional<double> ParseNumber(std::string_view text);
 
 /// "; did you mean 'crank'?" if a candidate is near the word, else empty.
 std::string DidYouMean(std::string_view word, std::span<const std::string> candidates);
