@@ -1,0 +1,56 @@
+#include "notebook.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+namespace vmech {
+
+Notebook::Notebook(int argc, char** argv) {
+  if (argc < 2) return;
+  file_.reset(std::fopen(argv[1], "wb"));
+  if (!file_) throw std::runtime_error(fmt::format("cannot write the results to '{}'", argv[1]));
+}
+
+void Notebook::Print(std::string_view text, Where where) {
+  Write("text", text, where);
+}
+
+void Notebook::Show(const html::Table& table, Where where) {
+  Write("html", html::RenderTable(table).html(), where);
+}
+
+void Notebook::Show(const plot::LinePlot& plot, Where where) {
+  Write("html", html::Figure(plot::Draw(plot)).html(), where);
+}
+
+void Notebook::Show(const plot::PolarPlot& plot, Where where) {
+  Write("html", html::Figure(plot::Draw(plot)).html(), where);
+}
+
+void Notebook::Check(std::string_view claim, bool holds, Where where) {
+  if (!holds) {
+    ++failures_;
+    fmt::print(stderr, "{}:{}: the claim does not hold: {}\n", where.file_name(), where.line(),
+               claim);
+  }
+  Write(holds ? "holds" : "fails", claim, where);
+}
+
+void Notebook::CheckNear(std::string_view claim, double value, double expected, double tolerance,
+                         Where where) {
+  Check(
+      fmt::format("{}: {:.10g}, expected {:.10g} within {:.1g}", claim, value, expected, tolerance),
+      std::abs(value - expected) <= tolerance, where);
+}
+
+void Notebook::Write(std::string_view kind, std::string_view content, const Where& where) {
+  if (file_) {
+    fmt::print(file_.get(), "{} {} {}\n{}\n", where.line(), kind, content.size(), content);
+  } else if (kind != "html") {
+    fmt::print("{}{}\n", kind == "text" ? "" : fmt::format("{}: ", kind), content);
+  }
+}
+
+}  // namespace vmech
