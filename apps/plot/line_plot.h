@@ -16,7 +16,8 @@ struct Axis {
   std::string title;
   std::string unit;  ///< shown in brackets; large or small values bring a prefix, "kN"
   ScaleType scale = ScaleType::kLinear;
-  std::optional<double> min, max;  ///< limits of the plot instead of those of the data
+  std::optional<double> min = std::nullopt;  ///< limits of the plot instead of those of the data
+  std::optional<double> max = std::nullopt;
 };
 
 /// One curve. x and y have the same length; a pair that is not finite interrupts the curve.

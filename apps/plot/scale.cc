@@ -144,6 +144,16 @@ std::string FormatSignificant(double value, int digits) {
   return FormatNumber(std::stod(rounded.substr(0, e)), digits - 1) + "×" + PowerOfTen(exponent);
 }
 
+std::string FormatShort(double value, int digits) {
+  std::string text = FormatSignificant(value, digits);
+  const std::size_t end = std::min(text.find("×"), text.size());
+  const std::size_t point = text.find('.');
+  if (point >= end) return text;
+  const std::size_t last = text.find_last_not_of('0', end - 1);
+  const std::size_t keep = last == point ? point : last + 1;
+  return text.erase(keep, end - keep);
+}
+
 std::string ScaledUnit(std::string_view unit, int exponent) {
   constexpr std::array<std::string_view, 9> kPrefixed = {"N", "N m", "W",   "J",   "Pa",
                                                          "s", "m",   "m/s", "m/s²"};

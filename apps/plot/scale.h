@@ -42,6 +42,9 @@ std::string FormatNumber(double value, int decimals);
 /// where that needs many zeros. "–" for a value that is not finite.
 std::string FormatSignificant(double value, int digits);
 
+/// FormatSignificant without zeros at the end: "15", "0.4".
+std::string FormatShort(double value, int digits);
+
 /// The unit for labels divided by 10^exponent: ("N", 3) gives "kN", ("mm", -6) gives "10⁻⁶ mm".
 std::string ScaledUnit(std::string_view unit, int exponent);
 

@@ -90,5 +90,13 @@ TEST(FormatSignificant, KeepsTheDigitsThatCount) {
   EXPECT_EQ(FormatSignificant(std::nan(""), 3), "–");
 }
 
+TEST(FormatShort, LeavesOutZerosThatSayNothing) {
+  EXPECT_EQ(FormatShort(15, 3), "15");
+  EXPECT_EQ(FormatShort(0.4, 3), "0.4");
+  EXPECT_EQ(FormatShort(1500, 4), "1500");
+  EXPECT_EQ(FormatShort(-2e-12, 2), "−2×10⁻¹²");
+  EXPECT_EQ(FormatShort(12.25, 4), "12.25");
+}
+
 }  // namespace
 }  // namespace vmech::plot
