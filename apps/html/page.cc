@@ -49,6 +49,10 @@ Markup BulletList(const std::vector<Markup>& items) {
   return Element("ul", list) + Markup::Raw("\n");
 }
 
+Markup ListOrParagraph(const std::vector<Markup>& items) {
+  return items.size() == 1 ? Paragraph(items.front()) : BulletList(items);
+}
+
 Markup Badge(const Markup& word, Tone tone) {
   return Element("span", word, fmt::format("badge {}", ClassOf(tone)));
 }

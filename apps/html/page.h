@@ -17,6 +17,8 @@ enum class Tone { kNeutral, kGood, kWarning, kBad };
 Markup Heading(int level, const Markup& text);
 Markup Paragraph(const Markup& text);
 Markup BulletList(const std::vector<Markup>& items);
+/// A bullet list, or a paragraph if there is one item only.
+Markup ListOrParagraph(const std::vector<Markup>& items);
 /// A short word in a coloured pill. The word carries the meaning, the colour repeats it.
 Markup Badge(const Markup& word, Tone tone);
 /// A paragraph set apart, for a warning or a result.
@@ -24,7 +26,7 @@ Markup Notice(const Markup& content, Tone tone);
 /// Content that is folded away under its summary; printed open.
 Markup Details(const Markup& summary, const Markup& content);
 Markup Figure(const Markup& drawing, const Markup& caption = {});
-/// Figures side by side where the page is wide enough; the first takes what room is left.
+/// Figures side by side where the page is wide enough (it is 1008 CSS pixels), with gaps of 24.
 Markup FigureRow(const std::vector<Markup>& figures);
 
 /// A headline number: what it is, its value with unit, and a remark below.

@@ -49,9 +49,8 @@ pre code { background: none; padding: 0; font-size: 1em; overflow-wrap: normal; 
 figure { margin: 1rem 0; min-width: 0; }
 figcaption { font-size: 0.88rem; margin-top: 0.4rem; max-width: 46rem; }
 figure svg { display: block; max-width: 100%; height: auto; }
-.figures { display: flex; flex-wrap: wrap; gap: 0.5rem 2rem; align-items: flex-start; }
-.figures figure { flex: 0 1 19rem; }
-.figures figure:first-child { flex: 1 1 30rem; }
+.figures { display: flex; flex-wrap: wrap; gap: 0.5rem 1.5rem; align-items: flex-start; }
+.figures figure { flex: 0 1 auto; }
 table { border-collapse: collapse; width: 100%; margin: 1rem 0 1.5rem; font-size: 0.92rem; }
 caption { text-align: left; padding: 0 0 0.4rem; font-size: 0.9rem; }
 th, td { text-align: left; padding: 0.42rem 0.7rem; border-bottom: 1px solid var(--line);

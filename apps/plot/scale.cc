@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kTickSlack = 1e-9;  // of a tick step: what rounding may shift a tick by
 
+constexpr double kSnap = 0.015;  // of the range: how near an end of it is to a tick
+
 /// The smallest of 1, 2, 5, 10 times a power of ten that is not below `raw`.
 double NiceStep(double raw) {
   const double decade = std::pow(10.0, std::floor(std::log10(raw)));
@@ -55,7 +57,18 @@ void Repair(ScaleType type, double* min, double* max) {
   }
 }
 
+/// Moves the ends of the range to the next tick outside where it is near: 0 .. 719 becomes 0 ..
+/// 720.
+void SnapToTicks(double step, Scale* scale) {
+  const double near = kSnap * (scale->upper - scale->lower);
+  const double below = step * std::floor(scale->lower / step + kTickSlack);
+  const double above = step * std::ceil(scale->upper / step - kTickSlack);
+  if (scale->lower - below <= near) scale->lower = below;
+  if (above - scale->upper <= near) scale->upper = above;
+}
+
 void AddLinearTicks(double step, bool rounded, Scale* scale) {
+  SnapToTicks(step, scale);
   if (rounded) {
     scale->lower = step * std::floor(scale->lower / step + kTickSlack);
     scale->upper = step * std::ceil(scale->upper / step - kTickSlack);

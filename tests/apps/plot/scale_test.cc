@@ -39,6 +39,11 @@ TEST(Scale, AnglesAreDividedAtRightAngles) {
             (Strings{"0", "180", "360", "540", "720"}));
 }
 
+TEST(Scale, RangeReachesToATickThatIsNear) {
+  EXPECT_EQ(MakeScale(ScaleType::kDegrees, 0, 719, 5, false).upper, 720);
+  EXPECT_EQ(MakeScale(ScaleType::kDegrees, 0, 700, 5, false).upper, 700);
+}
+
 TEST(Scale, SmallValuesBringAPowerOfTenIntoTheUnit) {
   const Scale scale = MakeScale(ScaleType::kLinear, 0, 3.1e-10, 4, true);
   EXPECT_EQ(scale.exponent, -12);
