@@ -12,10 +12,14 @@ namespace {
 int TurnAboutAxis(JointType type) {
   switch (type) {
     case JointType::kRevolute:
-    case JointType::kScrew: return 0;
-    case JointType::kCylindrical: return 1;
-    case JointType::kPlanar: return 2;
-    default: return -1;
+    case JointType::kScrew:
+      return 0;
+    case JointType::kCylindrical:
+      return 1;
+    case JointType::kPlanar:
+      return 2;
+    default:
+      return -1;
   }
 }
 

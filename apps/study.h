@@ -20,13 +20,13 @@ struct BearingRequest {
 /// A study file as read: what to compute, and what is asked of the result.
 struct StudyFile {
   std::filesystem::path path;
-  std::string name;                  ///< of the study; the file's stem if it gives none
-  std::string description;           ///< free text, may be empty
+  std::string name;         ///< of the study; the file's stem if it gives none
+  std::string description;  ///< free text, may be empty
   std::filesystem::path mechanism_path;
-  std::string motion;                ///< the motion in words: "main at 1500 rpm, 2 turns"
+  std::string motion;  ///< the motion in words: "main at 1500 rpm, 2 turns"
   LoadStudy study;
   std::vector<BearingRequest> bearings;
-  std::vector<Bearing> catalogue;    ///< the built-in one unless the file names another
+  std::vector<Bearing> catalogue;  ///< the built-in one unless the file names another
 };
 
 /// What came out for the bearings of one joint.
