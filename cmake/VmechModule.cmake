@@ -26,8 +26,8 @@ function(vmech_add_module path)
   target_include_directories(${target} PUBLIC
     $<BUILD_INTERFACE:${include_root}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(${target} PUBLIC cxx_std_20)
-  target_compile_definitions(${target} PUBLIC EIGEN_MAX_ALIGN_BYTES=16
-                             EIGEN_MALLOC_ALREADY_ALIGNED=1)
+  target_compile_definitions(${target} PUBLIC EIGEN_MAX_ALIGN_BYTES=64
+                             EIGEN_MAX_STATIC_ALIGN_BYTES=16)
   target_link_libraries(${target} PUBLIC ${ARG_PUBLIC}
     PRIVATE ${ARG_PRIVATE}
             $<BUILD_INTERFACE:vmech_settings> $<BUILD_INTERFACE:vmech_kernel_settings>)

@@ -47,7 +47,9 @@ if(VMECH_FORBID_MALLOC)
 endif()
 
 # vmech_kernel_settings: the arithmetic of the library itself. The alignment that Eigen assumes is
-# pinned to 16 bytes, which malloc gives (VmechModule.cmake), so that code compiled with and without AVX can be mixed.
+# pinned (VmechModule.cmake), so that code compiled with and without AVX can be mixed: 16 bytes for
+# members and the stack, 64 for the heap. Eigen never aligns the heap to less than its widest vector
+# and pads there by hand, so 16 would free in one file what another padded.
 add_library(vmech_kernel_settings INTERFACE)
 if(VMECH_ARCH AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   target_compile_options(vmech_kernel_settings INTERFACE -march=${VMECH_ARCH})
