@@ -1,0 +1,62 @@
+#pragma once
+
+#include "vmech/solvers/stopping_rule.h"
+#include "vmech/solvers/summary.h"
+#include "vmech/solvers/weighted_step.h"
+
+namespace vmech {
+
+/// The penalty method of the paper, eq. (8): the constraints become residuals of weight lambda,
+///
+///     [ J; lambda C ] dx = - [ r; lambda c ]
+///
+/// iterated. It is biased: at its fixed point J'r + lambda^2 C'c = 0, so the constraints stay open
+/// by multiplier / lambda^2. The bound on |c| is reported.
+struct PenaltyOptions {
+  /// lambda [-], in [1, 1e6]. Raising it closes the constraints better and leaves less precision
+  /// for the free motion.
+  double weight = 1e3;
+  /// Least Marquardt damping, relative to the diagonal of H, in [1e-14, 1]. Raise it where H is
+  /// nearly singular and steps wander.
+  double damping = 1e-12;
+  /// Longest step, max |dx_i| [unit of the tangent], > 0. Lower it to stay on one branch.
+  double max_step = std::numeric_limits<double>::infinity();
+  StoppingRule stopping;
+
+  void Validate() const;
+};
+
+/// What one step did; see PenaltyOptions and AugmentedLagrangianOptions.
+struct StepReport {
+  bool ok = false;             ///< false: the values were not finite, x is unchanged
+  double constraint_norm = 0;  ///< |c|_2 before the step
+  double step_norm = 0;        ///< max |dx_i|
+  double bias_bound = 0;  ///< |multiplier estimate| / lambda^2: the |c|_2 that the penalty leaves
+};
+
+/// What the allocation-free solve did. Its claim is unjudged.
+struct FastOutcome {
+  SolveStatus claim = SolveStatus::kNotRun;
+  int iterations = 0;
+  double constraint_norm = 0;  ///< max |c_i|
+  double bias_bound = 0;       ///< |c|_2 is at most this
+};
+
+struct PenaltyWorkspace {
+  explicit PenaltyWorkspace(const ConstrainedLeastSquares& problem);
+  WeightedStep step;
+  VectorXd no_multipliers;  ///< stays zero
+};
+
+/// One step of paper eq. (8) from *x, undivided: bounded work, no allocation.
+[[nodiscard]] StepReport Step(ConstrainedLeastSquares& problem, const PenaltyOptions& options,
+                              VectorXd* x, PenaltyWorkspace* workspace) noexcept;
+
+/// Steps with damping until the penalty function is stationary; no allocation.
+[[nodiscard]] FastOutcome Solve(ConstrainedLeastSquares& problem, const PenaltyOptions& options,
+                                VectorXd* x, PenaltyWorkspace* workspace) noexcept;
+
+/// The same, judged. The status is kBiased unless the bias is within the stopping rule.
+Summary Solve(ConstrainedLeastSquares& problem, const PenaltyOptions& options, const VectorXd& x0);
+
+}  // namespace vmech

@@ -1,0 +1,77 @@
+#pragma once
+
+#include "vmech/solvers/optimality.h"
+
+namespace vmech {
+
+/// The step that `penalty` and `augmented_lagrangian` share: Gauss-Newton on
+///
+///     phi(x) = 1/2 |r|^2 + mu' c + lambda^2/2 |c|^2
+///
+/// that is, paper eq. (8) with the loop error shifted by mu / lambda^2,
+///
+///     [ J        ]        [ r                        ]
+///     [ lambda C ] dx = - [ lambda (c + mu/lambda^2) ]
+///
+/// solved by its normal equations H dx = -g in place (LDL'), with Marquardt damping relative to
+/// the diagonal of H (the largest so far in one minimisation, as in MINPACK), and with coordinates
+/// held that press against a bound. All memory is taken by the constructor; nothing else here
+/// allocates or throws.
+class WeightedStep {
+ public:
+  explicit WeightedStep(const ConstrainedLeastSquares& problem);
+
+  /// Evaluates the problem at x, then H and g. False if anything is not finite.
+  [[nodiscard]] bool Linearize(ConstrainedLeastSquares& problem, const VectorXd& x, double lambda,
+                               const VectorXd& mu) noexcept;
+
+  /// dx from H and g, clipped to the bounds and to max |dx_i| <= max_step. False if H + damping is
+  /// not positive definite.
+  [[nodiscard]] bool Compute(const ConstrainedLeastSquares& problem, const VectorXd& x,
+                             double damping, double max_step) noexcept;
+
+  /// Forgets the scale of the damping that Compute() has gathered.
+  void ForgetScale() noexcept { scale_.setZero(); }
+
+  struct Descent {
+    bool ok = false;  ///< false: values that are not finite, or no step that descends
+    bool stationary = false;
+    int iterations = 0;
+  };
+  /// Levenberg-Marquardt on phi from *x until the largest entry of its gradient (held coordinates
+  /// left out) is below tolerance * max(1, |J'r|), no step descends, or max_iterations are spent.
+  [[nodiscard]] Descent Minimize(ConstrainedLeastSquares& problem, double lambda,
+                                 const VectorXd& mu, double damping, double max_step,
+                                 double tolerance, int max_iterations, VectorXd* x) noexcept;
+
+  /// mu + lambda^2 (c + C dx): the multipliers that the linear model gives after the step.
+  void UpdateMultipliers(double lambda, VectorXd* mu) noexcept;
+
+  Linearization at_x;          ///< of the last Linearize()
+  VectorXd dx;                 ///< the step
+  VectorXd c_model;            ///< c + C dx
+  bool use_curvature = false;  ///< H + S, S the problem's Curvature() at mu + lambda^2 c
+
+ private:
+  static double Phi(const VectorXd& r, const VectorXd& c, double lambda,
+                    const VectorXd& mu) noexcept;
+  double GradientError() const noexcept;
+  double TryStep(ConstrainedLeastSquares& problem, double lambda, const VectorXd& mu,
+                 double max_step, VectorXd* x) noexcept;
+  bool WithinNoise() const noexcept { return promised_ <= noise_; }
+  double PromisedDecrease() const noexcept;
+  void CorrectForCurvature(const ConstrainedLeastSquares& problem, const VectorXd& x, double lambda,
+                           double max_step) noexcept;
+  void HoldAtBounds(const ConstrainedLeastSquares& problem, const VectorXd& x) noexcept;
+  bool Factorize(double damping) noexcept;
+  void BackSubstitute() noexcept;
+  void Clip(const ConstrainedLeastSquares& problem, const VectorXd& x, double max_step) noexcept;
+
+  MatrixXd H_, S_, factor_;
+  VectorXd scale_;  // largest diagonal of H so far: a column that fades keeps its damping (MINPACK)
+  double promised_ = 0, noise_ = 0;  // decrease of phi: by the model, and lost in rounding
+  VectorXd g_, objective_gradient_, shifted_, trial_x_, trial_r_, trial_c_, saved_x_;
+  Eigen::Matrix<bool, Eigen::Dynamic, 1> held_;
+};
+
+}  // namespace vmech

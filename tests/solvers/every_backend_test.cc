@@ -1,0 +1,100 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/QR>
+
+#include "textbook_problems.h"
+#include "vmech/solvers/backend.h"
+
+namespace vmech {
+namespace {
+
+using testing::FindProblem;
+using testing::TextbookProblem;
+using testing::TextbookProblems;
+
+// The penalty with lambda = 1000 moves the solution by about multiplier / lambda^2.
+constexpr double kBias = 1e-4;
+constexpr double kObjectiveTolerance = 1e-8;
+
+// Gauss-Newton is slow on HS27, where all curvature comes from the multiplier.
+StoppingRule Patient() {
+  StoppingRule rule;
+  rule.max_iterations = 5000;
+  return rule;
+}
+
+bool IsExact(Backend backend) {
+  return backend != Backend::kPenalty;
+}
+
+class EveryProblemEveryBackend : public ::testing::TestWithParam<std::tuple<int, Backend>> {};
+
+TEST_P(EveryProblemEveryBackend, FindsTheKnownSolution) {
+  const auto& [index, backend] = GetParam();
+  const TextbookProblem& known = TextbookProblems()[index];
+  const auto problem = known.make();
+  const Summary summary = Solve(backend, *problem, Patient(), known.start);
+  if (summary.status == SolveStatus::kUnavailable) GTEST_SKIP() << summary.message;
+  SCOPED_TRACE(summary.FullReport());
+  if (IsExact(backend)) {
+    EXPECT_EQ(summary.status, SolveStatus::kConverged);
+  } else {
+    EXPECT_TRUE(summary.converged() || summary.status == SolveStatus::kBiased);
+  }
+  const double bias = IsExact(backend) ? 0 : kBias;
+  EXPECT_NEAR(summary.objective, known.objective, kObjectiveTolerance + bias);
+  if (known.solution.size() > 0) {
+    EXPECT_LT((summary.x - known.solution).cwiseAbs().maxCoeff(), known.solution_tolerance + bias);
+  }
+}
+
+std::string ParameterName(const ::testing::TestParamInfo<std::tuple<int, Backend>>& info) {
+  return TextbookProblems()[std::get<0>(info.param)].name + "_" +
+         std::string(NameOf(std::get<1>(info.param)));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Textbook, EveryProblemEveryBackend,
+    ::testing::Combine(::testing::Range(0, static_cast<int>(TextbookProblems().size())),
+                       ::testing::ValuesIn(kAllBackends)),
+    ParameterName);
+
+class EveryBackend : public ::testing::TestWithParam<Backend> {};
+
+TEST_P(EveryBackend, LabelsAnInfeasibleProblem) {
+  const auto problem = testing::InfeasibleProblem();
+  const Summary summary = Solve(GetParam(), *problem, StoppingRule{}, Eigen::Vector2d(0.5, 0.5));
+  if (summary.status == SolveStatus::kUnavailable) GTEST_SKIP() << summary.message;
+  EXPECT_EQ(summary.status, SolveStatus::kInfeasible) << summary.FullReport();
+  EXPECT_TRUE(summary.x.allFinite());
+}
+
+TEST_P(EveryBackend, RefusesAStartOfTheWrongSize) {
+  const auto problem = testing::InfeasibleProblem();
+  EXPECT_THROW(Solve(GetParam(), *problem, StoppingRule{}, VectorXd::Zero(3)),
+               std::invalid_argument);
+}
+
+TEST_P(EveryBackend, IsFoundByItsName) {
+  EXPECT_EQ(BackendFromName(NameOf(GetParam())), GetParam());
+}
+
+// At the four-bar's solution J'r + C'mu = 0 has one answer, C being of full rank.
+TEST_P(EveryBackend, ReturnsMultipliersThatBalanceTheGradient) {
+  const TextbookProblem& known = FindProblem("FourBarPulledOffItsPath");
+  const auto problem = known.make();
+  const Summary summary = Solve(GetParam(), *problem, StoppingRule{}, known.start);
+  if (summary.status == SolveStatus::kUnavailable) GTEST_SKIP() << summary.message;
+  VectorXd r(2), c(2);
+  MatrixXd J(2, 3), C(2, 3);
+  problem->Evaluate(known.solution, &r, &J, &c, &C);
+  const VectorXd mu = C.transpose().colPivHouseholderQr().solve(-J.transpose() * r);
+  const double tolerance = IsExact(GetParam()) ? 1e-8 : 1e-5;
+  EXPECT_LT((summary.multipliers - mu).norm(), tolerance) << summary.FullReport();
+}
+
+INSTANTIATE_TEST_SUITE_P(All, EveryBackend, ::testing::ValuesIn(kAllBackends),
+                         [](const auto& info) { return std::string(NameOf(info.param)); });
+
+}  // namespace
+}  // namespace vmech
