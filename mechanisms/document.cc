@@ -347,6 +347,14 @@ int Node::Integer(int fallback, int lowest, int highest) const {
   return fallback;
 }
 
+bool Node::Boolean(bool fallback) const {
+  if (!Expect(Kind::kScalar, "true or false")) return fallback;
+  const Document::Item& item = document_->items_[index_];
+  if (item.plain && IsBoolean(item.text)) return item.text[0] == 't' || item.text[0] == 'T';
+  Error("expected true or false, not " + Describe(item));
+  return fallback;
+}
+
 std::string Node::Text(std::string fallback) const {
   if (!Expect(Kind::kScalar, "text")) return fallback;
   const Document::Item& item = document_->items_[index_];

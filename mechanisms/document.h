@@ -78,6 +78,9 @@ class Node {
   int line() const;
   int column() const;
 
+  /// The document of a present node.
+  Document& document() const { return *document_; }
+
   /// Reports what is wrong with this value, at the value or at its key.
   void Error(std::string message) const;
   void KeyError(std::string message) const;
@@ -102,6 +105,7 @@ class Node {
   double Positive(double fallback = 1) const;
   double NonNegative(double fallback = 0) const;
   int Integer(int fallback, int lowest, int highest) const;
+  bool Boolean(bool fallback) const;
   std::string Text(std::string fallback = {}) const;
   Vector3d Vector3(const Vector3d& fallback = Vector3d::Zero()) const;
   /// Exactly `count` numbers; for count = 1 a bare number will do. Empty if absent or wrong.

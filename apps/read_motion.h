@@ -1,0 +1,47 @@
+#pragma once
+
+#include <filesystem>
+
+#include "vmech/apps/csv_table.h"
+#include "vmech/dynamics/load_study.h"
+#include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/units.h"
+
+namespace vmech {
+
+/// Reads a table that a node names, relative to a folder; reports at the node or in the table's own
+/// file what is wrong. Empty (no rows) if it cannot be used.
+CsvTable ReadTable(const Node& node, const std::filesystem::path& folder);
+
+/// Reports an error in a table, at its names (row < 0) or at a row.
+void ReportInTable(const Node& node, const CsvTable& table, int row, std::string message);
+
+/// Reports columns of a table that are missing or not known.
+bool CheckColumns(const Node& node, const CsvTable& table, const std::vector<std::string>& required,
+                  const std::vector<std::string>& optional);
+
+/// The index of the part that a node names in a list; -1 if there is none, which is reported.
+template <typename Part>
+int FindPart(const Node& node, std::string_view kind, const std::vector<Part>& parts) {
+  const std::string name = node.Text();
+  if (node.kind() != Node::Kind::kScalar) return -1;
+  std::vector<std::string> names;
+  for (const Part& part : parts) names.push_back(part.name);
+  for (size_t i = 0; i < names.size(); ++i) {
+    if (names[i] == name) return static_cast<int>(i);
+  }
+  node.Error(std::string(kind) + " " + Quoted(name) + " not found" + DidYouMean(name, names));
+  return -1;
+}
+
+/// True if a freedom of a joint is a rotation.
+bool IsRotation(JointType type, int freedom);
+
+/// Reads the block `motion` into the drives, or the hand, and the times of a study.
+void ReadMotion(const Node& node, const Units& units, const std::filesystem::path& folder,
+                LoadStudy* study);
+
+/// A sound block `motion` in words: "main at 1500 rpm, 2 turns".
+std::string MotionInWords(const Node& node);
+
+}  // namespace vmech

@@ -1,0 +1,58 @@
+#include "vmech/apps/csv_table.h"
+
+#include <gtest/gtest.h>
+
+namespace vmech {
+namespace {
+
+/// The first thing that is said of a table; empty if it is accepted.
+std::string Refusal(const std::string& text) {
+  try {
+    ParseCsvTable(text, "t.csv");
+  } catch (const FileErrors& errors) {
+    return ToString(errors.errors()[0]);
+  }
+  return "";
+}
+
+TEST(CsvTable, HasColumnsByNameAndTheLinesOfItsRows) {
+  const CsvTable table =
+      ParseCsvTable("# made by hand\nt, value\r\n0,1e-3\n\n 0.5 ,\t-2\n", "t.csv");
+  EXPECT_EQ(table.names, (std::vector<std::string>{"t", "value"}));
+  EXPECT_EQ(*table.Find("t"), (std::vector<double>{0, 0.5}));
+  EXPECT_EQ(*table.Find("value"), (std::vector<double>{1e-3, -2}));
+  EXPECT_EQ(table.lines, (std::vector<int>{3, 5}));
+  EXPECT_EQ(table.Find("v"), nullptr);
+}
+
+TEST(CsvTable, PassesOverAByteOrderMark) {
+  EXPECT_EQ(ParseCsvTable("\xEF\xBB\xBFt\n1\n", "t.csv").names[0], "t");
+}
+
+TEST(CsvTable, IsRefusedWithTheLineOfWhatIsWrong) {
+  EXPECT_EQ(Refusal(""), "t.csv: the table has no rows");
+  EXPECT_EQ(Refusal("t,v\n"), "t.csv: the table has no rows");
+  EXPECT_EQ(Refusal("t,v\n0,1\n1\n"), "t.csv:3:1: expected 2 values, as in line 1, not 1");
+  EXPECT_EQ(Refusal("t,v\n0,1\n1,x\n"), "t.csv:3:3: v: expected a finite number, not 'x'");
+  EXPECT_EQ(Refusal("t,v\n0,\n"), "t.csv:2:3: v: expected a finite number, not ''");
+  EXPECT_EQ(Refusal("t,v\n0,nan\n"), "t.csv:2:3: v: expected a finite number, not 'nan'");
+  EXPECT_EQ(Refusal("t\n1\n1\n"), "t.csv:3:1: t must increase from row to row, but 1 follows 1");
+  EXPECT_EQ(Refusal("0,1\n1,2\n"),
+            "t.csv:1:1: the first line must name the columns, not give numbers");
+  EXPECT_EQ(Refusal("t;v\n0;1\n"), "t.csv:1:1: expected names of columns, kept apart by commas");
+  EXPECT_EQ(Refusal("t,t\n0,1\n"), "t.csv:1:3: the column 't' is given twice");
+}
+
+TEST(CsvTable, StopsWhenThereIsTooMuchToReport) {
+  std::string text = "t\n";
+  for (int i = 0; i < 1000; ++i) text += "x\n";
+  try {
+    ParseCsvTable(text, "t.csv");
+    FAIL();
+  } catch (const FileErrors& errors) {
+    EXPECT_EQ(errors.errors().size(), 20u);
+  }
+}
+
+}  // namespace
+}  // namespace vmech
