@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "vmech/apps/plot/line_plot.h"
+#include "vmech/apps/plot/polar_plot.h"
+#include "vmech/dynamics/load_study.h"
+
+namespace vmech {
+
+/// Is a freedom of a joint a rotation (in radians) or a translation (in metres)?
+bool IsRotation(JointType type, int freedom);
+
+/// What the plots of a study run over: the drive's coordinate where a single motor moves steadily
+/// forward or backward, else time.
+struct Cycle {
+  plot::Axis axis;
+  std::vector<double> values;         ///< of every pose, in the unit of the axis
+  std::vector<plot::PathMark> marks;  ///< four poses to be named in polar diagrams
+
+  /// The value at a pose with its unit, "215°".
+  std::string At(size_t pose) const;
+};
+
+Cycle CycleOf(const LoadStudy& study, const LoadStudyResult& result);
+
+/// A sentence on how the mechanism is moved.
+std::string MotionInWords(const LoadStudy& study, const LoadStudyResult& result);
+
+}  // namespace vmech

@@ -1,0 +1,219 @@
+#include "vmech/apps/report/joint_section.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "vmech/apps/html/page.h"
+#include "vmech/apps/report/certainty_words.h"
+
+namespace vmech {
+namespace {
+
+using html::Markup;
+
+/// Of the largest load: less is not worth a label or a plot.
+constexpr double kWorthShowing = 1e-6;
+
+std::string Number(double value) {
+  return plot::FormatSignificant(value, 4);
+}
+
+/// Loads below this are rounding beside what else the mechanism carries.
+double Negligible(const LoadStudyResult& result) {
+  double largest = 0;
+  for (size_t i = 0; i < result.certainty.size(); ++i) {
+    const JointPeaks peaks = PeaksOf(result, i);
+    largest = std::max({largest, peaks.radial, peaks.axial});
+  }
+  return 1e-9 * largest;
+}
+
+std::string NumberOrZero(double value, double negligible) {
+  return std::abs(value) <= negligible ? "0" : Number(value);
+}
+
+bool HasPolarDiagram(JointType type) {
+  return type == JointType::kRevolute || type == JointType::kCylindrical ||
+         type == JointType::kScrew || type == JointType::kPrismatic;
+}
+
+/// What the force across and along z is called.
+std::array<std::string, 2> ForceNames(JointType type) {
+  if (type == JointType::kPrismatic) return {"across the guide", "along the guide"};
+  if (HasPolarDiagram(type)) return {"radial", "axial"};
+  return {"across z", "along z"};
+}
+
+plot::LinePlot ForcePlot(const LoadStudy& study, const LoadStudyResult& result, const Cycle& cycle,
+                         size_t joint) {
+  const std::array<std::string, 2> names = ForceNames(study.mechanism.joints[joint].type);
+  const JointPeaks peaks = PeaksOf(result, joint);
+  const double worth = kWorthShowing * std::max(peaks.radial, peaks.axial);
+  plot::Series radial{names[0], cycle.values, {}};
+  plot::Series axial{names[1], cycle.values, {}};
+  radial.mark_peak = peaks.radial > worth;
+  axial.mark_peak = peaks.axial > worth;
+  for (const PoseLoads& pose : result.poses) {
+    const Vector3d& force = pose.joints[joint].force;
+    radial.y.push_back(std::hypot(force.x(), force.y()));
+    axial.y.push_back(force.z());
+  }
+  plot::LinePlot plot;
+  plot.title = "Load over the cycle";
+  plot.description = fmt::format("Joint {}: force {} up to {} N, {} up to {} N.",
+                                 study.mechanism.joints[joint].name, names[0], Number(peaks.radial),
+                                 names[1], Number(peaks.axial));
+  plot.x = cycle.axis;
+  plot.y = {"force", "N"};
+  plot.series = {std::move(radial), std::move(axial)};
+  return plot;
+}
+
+plot::PolarPlot PolarDiagram(const LoadStudy& study, const LoadStudyResult& result,
+                             const Cycle& cycle, size_t joint) {
+  plot::PolarPlot plot;
+  plot.title = "Polar load diagram";
+  plot.description = fmt::format("Joint {}: path of the tip of the load across z.",
+                                 study.mechanism.joints[joint].name);
+  const bool guide = study.mechanism.joints[joint].type == JointType::kPrismatic;
+  plot.quantity = std::string(guide ? "force across the guide" : "radial load");
+  plot.unit = "N";
+  plot.paths.resize(1);
+  for (const PoseLoads& pose : result.poses) {
+    plot.paths[0].x.push_back(pose.joints[joint].force.x());
+    plot.paths[0].y.push_back(pose.joints[joint].force.y());
+  }
+  plot.marks = cycle.marks;
+  return plot;
+}
+
+plot::LinePlot MomentPlot(const LoadStudyResult& result, const Cycle& cycle, size_t joint) {
+  plot::LinePlot plot;
+  plot.title = "Moments over the cycle";
+  plot.description = "Moments about the origin of the second anchor, axes of the first.";
+  plot.x = cycle.axis;
+  plot.y = {"moment", "N m"};
+  for (const int axis : {0, 1, 2}) {
+    plot::Series series{fmt::format("about {}", "xyz"[axis]), cycle.values, {}};
+    for (const PoseLoads& pose : result.poses) series.y.push_back(pose.joints[joint].moment[axis]);
+    plot.series.push_back(std::move(series));
+  }
+  plot.series[1].line = plot::LineStyle::kDashed;
+  plot.series[2].line = plot::LineStyle::kDotted;
+  return plot;
+}
+
+html::Tone ToneOf(Certainty certainty) {
+  switch (certainty) {
+    case Certainty::kCertain:
+      return html::Tone::kGood;
+    case Certainty::kNotDetermined:
+      return html::Tone::kWarning;
+    case Certainty::kSingular:
+      break;
+  }
+  return html::Tone::kBad;
+}
+
+Markup ComponentTable(const LoadStudyResult& result, size_t joint, double negligible) {
+  constexpr std::array<std::string_view, 6> kNames = {"fx", "fy", "fz", "mx", "my", "mz"};
+  html::Table table;
+  table.columns = {{"Component"}, {"Least", true}, {"Greatest", true}, {"Root mean square", true},
+                   {"Unit"},      {"Verdict"}};
+  for (int i = 0; i < 6; ++i) {
+    double least = INFINITY, greatest = -INFINITY, squares = 0;
+    for (const PoseLoads& pose : result.poses) {
+      const double value = i < 3 ? pose.joints[joint].force[i] : pose.joints[joint].moment[i - 3];
+      least = std::min(least, value);
+      greatest = std::max(greatest, value);
+      squares += value * value;
+    }
+    const double rms = std::sqrt(squares / static_cast<double>(result.poses.size()));
+    const Certainty verdict = result.certainty[joint][static_cast<size_t>(i)];
+    table.rows.push_back({html::Element("code", kNames[static_cast<size_t>(i)]),
+                          NumberOrZero(least, negligible), NumberOrZero(greatest, negligible),
+                          NumberOrZero(rms, negligible), i < 3 ? "N" : "N m",
+                          html::Badge(NameOf(verdict), ToneOf(verdict))});
+  }
+  return html::RenderTable(table);
+}
+
+Markup JointSection(const LoadStudy& study, const LoadStudyResult& result, const Cycle& cycle,
+                    size_t index, double negligible) {
+  const Joint& joint = study.mechanism.joints[index];
+  const auto link = [&](AnchorId id) {
+    return study.mechanism.links[static_cast<size_t>(id.link)].name;
+  };
+  Markup section =
+      html::Element("h3", Markup(joint.name) + " " + html::Element("small", NameOf(joint.type)));
+  section +=
+      html::Paragraph(fmt::format("What {} exerts on {}, in the axes of the joint's anchor on {}.",
+                                  link(joint.first), link(joint.second), link(joint.first)));
+  std::vector<Markup> figures = {html::Figure(plot::Draw(ForcePlot(study, result, cycle, index)))};
+  if (HasPolarDiagram(joint.type)) {
+    figures.push_back(html::Figure(plot::Draw(PolarDiagram(study, result, cycle, index))));
+  }
+  section += html::FigureRow(figures);
+  Markup details = ComponentTable(result, index, negligible);
+  double largest = 0;
+  for (const PoseLoads& pose : result.poses) {
+    largest = std::max(largest, pose.joints[index].moment.cwiseAbs().maxCoeff());
+  }
+  if (largest > negligible) {
+    details += html::Figure(plot::Draw(MomentPlot(result, cycle, index)));
+  }
+  return section + html::Details("All six components", details);
+}
+
+}  // namespace
+
+JointPeaks PeaksOf(const LoadStudyResult& result, size_t joint) {
+  JointPeaks peaks;
+  const auto raise = [](double value, size_t pose, double* peak, size_t* at) {
+    if (value > *peak) *peak = value, *at = pose;
+  };
+  for (size_t i = 0; i < result.poses.size(); ++i) {
+    const Wrenchd& wrench = result.poses[i].joints[joint];
+    raise(std::hypot(wrench.force.x(), wrench.force.y()), i, &peaks.radial, &peaks.radial_pose);
+    raise(std::abs(wrench.force.z()), i, &peaks.axial, &peaks.axial_pose);
+    raise(std::hypot(wrench.moment.x(), wrench.moment.y()), i, &peaks.tilting, &peaks.tilting_pose);
+  }
+  return peaks;
+}
+
+Markup JointOverview(const LoadStudy& study, const LoadStudyResult& result, const Cycle& cycle) {
+  html::Table table;
+  table.columns = {{"Joint"},           {"Type"},     {"Radial [N]", true},    {"at", true},
+                   {"Axial [N]", true}, {"at", true}, {"Tilting [N m]", true}, {"Statics"}};
+  const double negligible = Negligible(result);
+  const auto at = [&](double peak, size_t pose) {
+    return peak <= negligible ? Markup("–") : Markup(cycle.At(pose));
+  };
+  for (size_t i = 0; i < study.mechanism.joints.size(); ++i) {
+    const Joint& joint = study.mechanism.joints[i];
+    const JointPeaks peaks = PeaksOf(result, i);
+    table.rows.push_back(
+        {html::Element("strong", joint.name), NameOf(joint.type),
+         NumberOrZero(peaks.radial, negligible), at(peaks.radial, peaks.radial_pose),
+         NumberOrZero(peaks.axial, negligible), at(peaks.axial, peaks.axial_pose),
+         NumberOrZero(peaks.tilting, negligible), CertaintyBadge(result.certainty[i])});
+  }
+  return html::Heading(2, "Peak loads of the joints") + html::RenderTable(table) +
+         html::Paragraph(
+             "Radial is across, axial along the z axis of the joint's first anchor; the "
+             "tilting moment turns across z, about the origin of the second anchor.");
+}
+
+Markup JointSections(const LoadStudy& study, const LoadStudyResult& result, const Cycle& cycle) {
+  Markup sections = html::Heading(2, "Joint by joint");
+  const double negligible = Negligible(result);
+  for (size_t i = 0; i < study.mechanism.joints.size(); ++i) {
+    sections += JointSection(study, result, cycle, i, negligible);
+  }
+  return sections;
+}
+
+}  // namespace vmech

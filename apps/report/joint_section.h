@@ -1,0 +1,26 @@
+#pragma once
+
+#include "vmech/apps/html/markup.h"
+#include "vmech/apps/report/cycle.h"
+#include "vmech/dynamics/load_study.h"
+
+namespace vmech {
+
+/// The largest loads of one joint and where they occur.
+struct JointPeaks {
+  double radial = 0, axial = 0, tilting = 0;  ///< [N], [N], [N m]
+  size_t radial_pose = 0, axial_pose = 0, tilting_pose = 0;
+};
+
+/// Radial: across z of the joint's first anchor; axial: along z; tilting: moment across z.
+JointPeaks PeaksOf(const LoadStudyResult& result, size_t joint);
+
+/// One line per joint: its peaks, where they occur, and the verdict.
+html::Markup JointOverview(const LoadStudy& study, const LoadStudyResult& result,
+                           const Cycle& cycle);
+
+/// Plots and a table of the components of every joint.
+html::Markup JointSections(const LoadStudy& study, const LoadStudyResult& result,
+                           const Cycle& cycle);
+
+}  // namespace vmech

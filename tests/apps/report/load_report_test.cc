@@ -1,0 +1,266 @@
+#include "vmech/apps/report/load_report.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "vmech/apps/report/certainty_words.h"
+#include "vmech/apps/report/cycle.h"
+#include "vmech/apps/report/joint_section.h"
+#include "vmech/dynamics/bearings/catalogue.h"
+
+namespace vmech {
+namespace {
+
+constexpr int kPoses = 73;
+constexpr double kSpeed = 20;  // [rad/s]
+
+/// A crank that turns once against a rotating load of 1000 N with its peak of 1500 N at 90 degrees:
+/// numbers that can be looked for in the report.
+struct Example {
+  StudyFile file;
+  StudyOutcome outcome;
+  LoadStudy& study = file.study;
+  LoadStudyResult& result = outcome.loads;
+
+  Example() {
+    Mechanism& mechanism = study.mechanism;
+    mechanism.name = "test crank";
+    file.name = "test study";
+    file.path = "somewhere/test.yaml";
+    mechanism.links = {{"frame", {}, {{"main", {}}}}, {"crank", {}, {{"main", {}}}}};
+    mechanism.joints = {MakeJoint("main", JointType::kRevolute, {0, 0}, {1, 0})};
+    study.drives = {{0, 0, MotionLaw::Uniform(0, kSpeed)}};
+    result.certainty.push_back({});
+    result.mobility = 1;
+    for (int i = 0; i < kPoses; ++i) AddPose(2 * std::numbers::pi * i / (kPoses - 1));
+  }
+
+  void AddPose(double angle) {
+    PoseLoads pose;
+    pose.time = angle / kSpeed;
+    pose.drives = {{angle, kSpeed, 0}};
+    const double radial = 1000 + 500 * std::max(0.0, std::sin(angle));
+    Wrenchd wrench;
+    wrench.force = {radial * std::cos(angle), radial * std::sin(angle), 50};
+    wrench.moment = {0, 3, 0};
+    pose.joints = {wrench};
+    pose.joint_positions = {{angle, 0, 0}};
+    pose.joint_rates = {{kSpeed, 0, 0}};
+    pose.drive_forces = {12.5 * std::cos(angle)};
+    pose.power = pose.drive_forces[0] * kSpeed;
+    pose.power_error = 1e-14;
+    study.times.push_back(pose.time);
+    result.poses.push_back(pose);
+  }
+
+  Example& WithBearings(LoadCertainty certainty = LoadCertainty::kCertain) {
+    DutyCycle cycle;
+    cycle.duration = DurationsFromTimes(study.times);
+    for (const PoseLoads& pose : result.poses) {
+      cycle.angle.push_back(pose.drives[0].position);
+      cycle.speed.push_back(pose.drives[0].velocity);
+      cycle.wrench.push_back(pose.joints[0]);
+    }
+    BearingRequest request{0, {{-0.015, 0.015}, 0}, {}};
+    request.requirements.shaft_min = 0.015;
+    request.requirements.shaft_max = 0.030;
+    file.bearings = {request};
+    outcome.bearings = {{0, SelectJointBearings(cycle, request.arrangement, request.requirements,
+                                                certainty, BuiltInCatalogue())}};
+    return *this;
+  }
+
+  std::string Render() const { return RenderLoadReport(file, outcome, "1.2.3"); }
+};
+
+bool Contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// Every element that is opened is closed, in order; text holds no stray < or &.
+void ExpectWellFormed(const std::string& page) {
+  std::vector<std::string> open;
+  for (size_t at = page.find("<html"); at < page.size(); at = page.find('<', at + 1)) {
+    const size_t end = page.find('>', at);
+    ASSERT_NE(end, std::string::npos);
+    const std::string tag = page.substr(at + 1, end - at - 1);
+    const std::string name =
+        tag.substr(tag[0] == '/' ? 1 : 0, tag.find_first_of(" /", 1) - (tag[0] == '/' ? 1 : 0));
+    if (tag[0] == '/') {
+      ASSERT_FALSE(open.empty());
+      ASSERT_EQ(open.back(), tag.substr(1)) << page.substr(at, 80);
+      open.pop_back();
+    } else if (tag.back() != '/') {
+      open.push_back(name);
+    }
+  }
+  EXPECT_TRUE(open.empty());
+  for (size_t at = page.find('&'); at != std::string::npos; at = page.find('&', at + 1)) {
+    EXPECT_LT(page.find(';', at), at + 8) << page.substr(at, 30);
+  }
+}
+
+TEST(LoadReport, IsWellFormedAndNeedsNothingFromElsewhere) {
+  const std::string page = Example().WithBearings().Render();
+  ExpectWellFormed(page);
+  for (const char* outside : {"src=", "href=", "url(", "@import", "<script"}) {
+    EXPECT_FALSE(Contains(page, outside)) << outside;
+  }
+}
+
+TEST(LoadReport, HeadlineNumbersAreThoseOfTheResult) {
+  const std::string page = Example().Render();
+  EXPECT_TRUE(Contains(page, "<h1>test study</h1>"));
+  EXPECT_TRUE(Contains(
+      page, "<strong>test crank</strong>. Joint main turns at 191 rpm; 73 poses over 0.314 s."));
+  EXPECT_TRUE(Contains(page, "1501&#160;<small>N<"));  // |(1500, 50)|
+  EXPECT_TRUE(Contains(page, "at joint main, 90°"));
+  EXPECT_TRUE(Contains(page, "12.50&#160;<small>N m<"));
+}
+
+TEST(LoadReport, EveryJointHasItsPlots) {
+  const std::string page = Example().Render();
+  for (const char* text : {"Load over the cycle", "Polar load diagram", "Drive torque",
+                           "Error of the power balance", "angle of main [°]"}) {
+    EXPECT_TRUE(Contains(page, text)) << text;
+  }
+}
+
+TEST(LoadReport, HostileNamesStayNames) {
+  Example example;
+  example.study.mechanism.name = "</p><script>alert(1)</script>";
+  example.file.name = "</title><script>alert(2)</script>";
+  example.file.description = "<script>alert(3)</script>";
+  example.file.path = "<script>.yaml";
+  example.study.mechanism.joints[0].name = "a\"b<c>&d'\x01";
+  example.study.mechanism.links[0].name = "<img src=x>";
+  example.result.warnings = {"<b>warning</b>"};
+  const std::string page = example.WithBearings().Render();
+  ExpectWellFormed(page);
+  EXPECT_FALSE(Contains(page, "<script"));
+  EXPECT_FALSE(Contains(page, "<img"));
+  EXPECT_FALSE(Contains(page, "<b>"));
+  EXPECT_FALSE(Contains(page, "\x01"));
+}
+
+TEST(LoadReport, NumbersThatAreNotFiniteAreShownAsDashes) {
+  Example example;
+  example.result.poses[10].joints[0].force.x() = std::numeric_limits<double>::quiet_NaN();
+  example.result.poses[11].power = std::numeric_limits<double>::infinity();
+  const std::string page = example.Render();
+  ExpectWellFormed(page);
+  for (const char* word : {"nan", "NaN", ">inf", "-inf"})
+    EXPECT_FALSE(Contains(page, word)) << word;
+}
+
+TEST(LoadReport, BearingsStandWithTheirReasons) {
+  Example example;
+  const std::string page = example.WithBearings(LoadCertainty::kDependsOnRule).Render();
+  const JointBearings& bearings = example.outcome.bearings[0].bearings;
+  ASSERT_TRUE(bearings.complete());
+  for (const BearingSelection& selection : bearings.selections) {
+    EXPECT_TRUE(Contains(page, html::EscapeText(selection.message))) << selection.message;
+    for (size_t i = 0; i < selection.candidates.size(); ++i) {
+      EXPECT_TRUE(Contains(page, selection.candidates[i].bearing.designation));
+      if (static_cast<int>(i) == selection.chosen) continue;
+      const std::string reason = selection.ReasonAgainst(static_cast<int>(i));
+      EXPECT_TRUE(Contains(page, html::EscapeText(reason))) << reason;
+    }
+  }
+  EXPECT_TRUE(Contains(page, "hold for the rule <code>stiffness</code>"));
+}
+
+TEST(LoadReport, SaysThatNoBearingFits) {
+  Example example;
+  for (PoseLoads& pose : example.result.poses) pose.joints[0].force *= 1000;
+  const std::string page = example.WithBearings().Render();
+  EXPECT_TRUE(Contains(page, "no bearing of the catalogue fits"));
+}
+
+TEST(LoadReport, SameInputGivesSameBytes) {
+  EXPECT_EQ(Example().WithBearings().Render(), Example().WithBearings().Render());
+}
+
+TEST(LoadReport, ResultsOfAnotherMechanismAreRefused) {
+  Example example;
+  example.study.mechanism.joints.push_back(example.study.mechanism.joints[0]);
+  EXPECT_THROW(example.Render(), std::invalid_argument);
+  Example without_poses;
+  without_poses.result.poses.clear();
+  EXPECT_THROW(without_poses.Render(), std::invalid_argument);
+  Example without_bearings;
+  without_bearings.WithBearings().outcome.bearings.clear();
+  EXPECT_THROW(without_bearings.Render(), std::invalid_argument);
+}
+
+TEST(LoadReport, ASinglePoseIsEnough) {
+  Example example;
+  example.result.poses.resize(1);
+  ExpectWellFormed(example.Render());
+}
+
+constexpr Certainty kYes = Certainty::kCertain;
+constexpr Certainty kNo = Certainty::kNotDetermined;
+
+TEST(CertaintyWords, NameTheComponentsOfAPlanarFourBarInSpace) {
+  const JointCertainty planar = {kYes, kYes, kNo, kNo, kNo, kYes};
+  EXPECT_EQ(ComponentsInWords(JointType::kRevolute, planar, kNo),
+            "the axial force and the two tilting moments");
+  EXPECT_EQ(ComponentsInWords(JointType::kRevolute, planar, Certainty::kSingular), "");
+}
+
+TEST(CertaintyWords, NameComponentsOneByOneWhereTheyDiffer) {
+  EXPECT_EQ(ComponentsInWords(JointType::kPrismatic, {kNo, kYes, kYes, kYes, kNo, kNo}, kNo),
+            "the force along x, the moment about y and the moment about z");
+}
+
+TEST(CertaintyWords, JointsOfEqualVerdictShareASentence) {
+  Example example;
+  example.study.mechanism.joints.push_back(example.study.mechanism.joints[0]);
+  example.study.mechanism.joints[1].name = "pin";
+  example.result.certainty = {{kYes, kYes, kNo}, {kYes, kYes, kNo}};
+  example.result.redundant_equations = 1;
+  const std::string section = CertaintySection(example.study, example.result).html();
+  EXPECT_TRUE(Contains(section,
+                       "<strong>main and pin</strong>: the axial force cannot be known "
+                       "from statics; the figures shown follow the rule "
+                       "<code>stiffness</code>"));
+}
+
+TEST(CertaintyWords, WhereAllIsCertainNoRuleIsNamed) {
+  const Example example;
+  EXPECT_FALSE(
+      Contains(CertaintySection(example.study, example.result).html(), "stiffness</code>"));
+}
+
+TEST(Cycle, RunsOverTimeWhereTheDriveTurnsBack) {
+  Example example;
+  EXPECT_EQ(CycleOf(example.study, example.result).axis.unit, "°");
+  example.result.poses[5].drives[0].position = 0;
+  EXPECT_EQ(CycleOf(example.study, example.result).axis.unit, "s");
+}
+
+TEST(Cycle, MarksTheQuartersOfATurn) {
+  const Example example;
+  const Cycle cycle = CycleOf(example.study, example.result);
+  ASSERT_EQ(cycle.marks.size(), 4u);
+  EXPECT_EQ(cycle.marks[1].label, "90°");
+  EXPECT_EQ(cycle.marks[1].index, 18u);
+}
+
+TEST(JointPeaks, StandWhereTheLoadIsLargest) {
+  const Example example;
+  const JointPeaks peaks = PeaksOf(example.result, 0);
+  constexpr double kRounding = 1e-9;
+  EXPECT_NEAR(peaks.radial, 1500, kRounding);
+  EXPECT_EQ(peaks.radial_pose, 18u);
+  EXPECT_EQ(peaks.axial, 50);
+  EXPECT_EQ(peaks.tilting, 3);
+}
+
+}  // namespace
+}  // namespace vmech
