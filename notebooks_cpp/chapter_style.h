@@ -6,7 +6,7 @@ namespace vmech {
 
 /// What a chapter adds to the style sheet of pages.
 inline constexpr std::string_view kChapterStyle = R"css(
-main { max-width: 52rem; }
+main { max-width: 58rem; }
 .formula { margin: 1.1rem 0; overflow-x: auto; }
 math { font-size: 1.1em;
   font-family: "STIX Two Math", "Latin Modern Math", "Cambria Math", "Libertinus Math", serif; }
@@ -15,6 +15,7 @@ math .bold { font-weight: 700; font-style: normal; }
 .output { background: none; padding: 0.2rem 1rem; margin: 0.4rem 0 1.2rem;
   border-left: 3px solid var(--line); border-radius: 0; }
 .check { margin: 0.3rem 0 0.5rem; font-size: 0.92rem; max-width: none; }
+.check + p:not(.check) { margin-top: 1.2rem; }
 .cell .k { color: #8a2b91; } .cell .t { color: #0b5f8a; } .cell .n { color: #9a4a00; }
 .cell .s { color: #2a6b2f; } .cell .c { color: var(--muted); font-style: italic; }
 .cell .p { color: #7a5a00; }

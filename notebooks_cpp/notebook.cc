@@ -40,9 +40,11 @@ void Notebook::Check(std::string_view claim, bool holds, Where where) {
 
 void Notebook::CheckNear(std::string_view claim, double value, double expected, double tolerance,
                          Where where) {
-  Check(
-      fmt::format("{}: {:.10g}, expected {:.10g} within {:.1g}", claim, value, expected, tolerance),
-      std::abs(value - expected) <= tolerance, where);
+  const std::string figures =
+      expected == 0
+          ? fmt::format("{:.1e}, at most {:.0e}", value, tolerance)
+          : fmt::format("{:.10g}, expected {:.10g} within {:.0e}", value, expected, tolerance);
+  Check(fmt::format("{}: {}", claim, figures), std::abs(value - expected) <= tolerance, where);
 }
 
 void Notebook::Write(std::string_view kind, std::string_view content, const Where& where) {
