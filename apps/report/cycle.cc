@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "vmech/apps/read_motion.h"
+
 namespace vmech {
 namespace {
 
@@ -65,19 +67,6 @@ std::string SpeedInWords(const std::vector<PoseLoads>& poses, size_t drive, bool
 
 }  // namespace
 
-bool IsRotation(JointType type, int freedom) {
-  switch (type) {
-    case JointType::kPrismatic:
-      return false;
-    case JointType::kCylindrical:
-      return freedom == 1;
-    case JointType::kPlanar:
-      return freedom == 2;
-    default:
-      return true;
-  }
-}
-
 std::string Cycle::At(size_t pose) const {
   const double value = values[pose];
   if (axis.scale == plot::ScaleType::kDegrees) return plot::FormatNumber(value, 0) + "°";
@@ -106,7 +95,7 @@ Cycle CycleOf(const LoadStudy& study, const LoadStudyResult& result) {
   return cycle;
 }
 
-std::string MotionInWords(const LoadStudy& study, const LoadStudyResult& result) {
+std::string DescribeMotion(const LoadStudy& study, const LoadStudyResult& result) {
   const std::vector<PoseLoads>& poses = result.poses;
   std::string words;
   for (size_t i = 0; i < study.drives.size(); ++i) {

@@ -9,9 +9,6 @@
 
 namespace vmech {
 
-/// Is a freedom of a joint a rotation (in radians) or a translation (in metres)?
-bool IsRotation(JointType type, int freedom);
-
 /// What the plots of a study run over: the drive's coordinate where a single motor moves steadily
 /// forward or backward, else time.
 struct Cycle {
@@ -25,7 +22,7 @@ struct Cycle {
 
 Cycle CycleOf(const LoadStudy& study, const LoadStudyResult& result);
 
-/// A sentence on how the mechanism is moved.
-std::string MotionInWords(const LoadStudy& study, const LoadStudyResult& result);
+/// A sentence on how the mechanism moved, from the results.
+std::string DescribeMotion(const LoadStudy& study, const LoadStudyResult& result);
 
 }  // namespace vmech

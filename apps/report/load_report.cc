@@ -8,6 +8,7 @@
 
 #include "vmech/apps/html/page.h"
 #include "vmech/apps/plot/style.h"
+#include "vmech/apps/read_motion.h"
 #include "vmech/apps/report/bearing_section.h"
 #include "vmech/apps/report/certainty_words.h"
 #include "vmech/apps/report/cycle.h"
@@ -124,7 +125,7 @@ Markup Header(const Report& report, const Cycle& cycle) {
   header +=
       html::Element("p",
                     Markup("Mechanism ") + html::Element("strong", report.study.mechanism.name) +
-                        ". " + MotionInWords(report.study, report.result),
+                        ". " + DescribeMotion(report.study, report.result),
                     "lead");
   if (!report.file.description.empty()) header += html::Paragraph(report.file.description);
   header += Headline(report, cycle);
