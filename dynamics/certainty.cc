@@ -1,10 +1,10 @@
 #include "vmech/dynamics/certainty.h"
 
-#include <Eigen/SVD>
 #include <algorithm>
 
 #include "vmech/dynamics/reactions.h"
 #include "vmech/kinematics/closure.h"
+#include "vmech/kinematics/linear_algebra.h"
 #include "vmech/kinematics/loops.h"
 #include "vmech/kinematics/mobility.h"
 
@@ -69,18 +69,17 @@ std::vector<JointCertainty> JudgeCertainty(const KinematicTree& tree,
   if (tree.rows == 0) return result;
 
   const MatrixXd C_u = DependentColumns(tree, partition, q);
-  const Eigen::JacobiSVD<MatrixXd, Eigen::FullPivHouseholderQRPreconditioner> svd(
-      C_u, Eigen::ComputeFullU);
-  const VectorXd& sigma = svd.singularValues();
+  const LeftSingularVectors svd = FindLeftSingularVectors(C_u);
+  const VectorXd& sigma = svd.values;
   LoadMarker marker(tree, q);
   // First what grows at a dead centre, then what stays open anywhere.
   for (Eigen::Index k = 0; k < sigma.size(); ++k) {
     if (sigma[k] <= kSingularTolerance * sigma[0]) {
-      marker.Mark(svd.matrixU().col(k), Certainty::kSingular, &result);
+      marker.Mark(svd.vectors.col(k), Certainty::kSingular, &result);
     }
   }
   for (Eigen::Index k = sigma.size(); k < C_u.rows(); ++k) {
-    marker.Mark(svd.matrixU().col(k), Certainty::kNotDetermined, &result);
+    marker.Mark(svd.vectors.col(k), Certainty::kNotDetermined, &result);
   }
   return result;
 }
@@ -88,8 +87,8 @@ std::vector<JointCertainty> JudgeCertainty(const KinematicTree& tree,
 double DistanceFromDeadCentre(const KinematicTree& tree, const CoordinatePartition& partition,
                               const VectorXd& q) {
   if (partition.dependent.empty() || tree.rows == 0) return 1;
-  const Eigen::JacobiSVD<MatrixXd> svd(DependentColumns(tree, partition, q));
-  return svd.singularValues().minCoeff() / svd.singularValues().maxCoeff();
+  const VectorXd sigma = FindLeftSingularVectors(DependentColumns(tree, partition, q)).values;
+  return sigma.minCoeff() / sigma.maxCoeff();
 }
 
 }  // namespace vmech

@@ -1,12 +1,11 @@
 #include "vmech/dynamics/hand_wrench.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "vmech/dynamics/newton_euler.h"
 #include "vmech/kinematics/forward_kinematics.h"
 #include "vmech/kinematics/jacobian.h"
+#include "vmech/kinematics/linear_algebra.h"
 
 namespace vmech {
 namespace {
@@ -21,7 +20,7 @@ MatrixXd GraspMotions(const LoadModel& model, const TreeWorkspace<double>& ws, c
 VectorXd NearestMotion(const LoadModel& model, const LoadWorkspace& ws, const Vector6d& V) {
   const MatrixXd JN = GraspMotions(model, ws.tree, ws.motions);
   const MatrixXd KJN = model.hand_stiffness.asDiagonal() * JN;
-  return Eigen::LDLT<MatrixXd>(JN.transpose() * KJN).solve(KJN.transpose() * V);
+  return SolveSymmetric(JN.transpose() * KJN, KJN.transpose() * V);
 }
 
 }  // namespace
@@ -38,9 +37,10 @@ Posed GraspPose(const LoadModel& model, const TreeWorkspace<double>& ws) {
 double HandAuthority(const LoadModel& model, const TreeWorkspace<double>& ws, const MatrixXd& N) {
   if (N.cols() == 0) return 1;
   const MatrixXd JN = GraspMotions(model, ws, N);
-  const MatrixXd H = JN.transpose() * model.hand_stiffness.asDiagonal() * JN;
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(H, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, eigen.eigenvalues().minCoeff()) / eigen.eigenvalues().maxCoeff());
+  if (N.cols() > 6) return 0;
+  const MatrixXd weighted = model.hand_stiffness.cwiseSqrt().asDiagonal() * JN;
+  const VectorXd sigma = FindLeftSingularVectors(weighted).values;
+  return sigma.minCoeff() / sigma.maxCoeff();
 }
 
 void HandVelocities(const LoadModel& model, const HandSample& hand, LoadWorkspace* ws) {
@@ -56,7 +56,7 @@ void ApplyHandWrench(const LoadModel& model, LoadWorkspace* ws, PoseLoads* out) 
   const MatrixXd JN = GraspMotions(model, ws->tree, ws->motions);
   const MatrixXd KJN = model.hand_stiffness.asDiagonal() * JN;
   const VectorXd along = ws->motions.transpose() * (ws->tau - ws->passive);
-  const Vector6d w_d = KJN * Eigen::LDLT<MatrixXd>(JN.transpose() * KJN).solve(along);
+  const Vector6d w_d = KJN * SolveSymmetric(JN.transpose() * KJN, along);
   out->hand = {w_d.head<3>(), w_d.tail<3>()};
   const Vector3d p_WG = GraspPose(model, ws->tree).p;
   for (int n = GraspNode(model); n >= 0; n = model.tree.nodes[n].parent) {

@@ -1,10 +1,10 @@
 #include "vmech/dynamics/idle_freedoms.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 
 #include "vmech/dynamics/newton_euler.h"
 #include "vmech/kinematics/forward_kinematics.h"
+#include "vmech/kinematics/linear_algebra.h"
 
 namespace vmech {
 namespace {
@@ -37,16 +37,14 @@ MatrixXd IdleInertia(const LoadModel& model, LoadWorkspace* ws) {
 
 void RemoveIdleMomentum(const LoadModel& model, LoadWorkspace* ws) {
   const auto idle = static_cast<Eigen::Index>(model.partition.idle.size());
-  const VectorXd rate =
-      Eigen::LDLT<MatrixXd>(IdleInertia(model, ws)).solve(IdleMomentum(model, ws->v, ws));
+  const VectorXd rate = SolveSymmetric(IdleInertia(model, ws), IdleMomentum(model, ws->v, ws));
   ws->v -= ws->motions.rightCols(idle) * rate;
 }
 
 void SettleIdleFreedoms(const LoadModel& model, LoadWorkspace* ws) {
   const auto idle = static_cast<Eigen::Index>(model.partition.idle.size());
   const VectorXd open = ws->motions.rightCols(idle).transpose() * (ws->tau - ws->passive);
-  ws->vdot -=
-      ws->motions.rightCols(idle) * Eigen::LDLT<MatrixXd>(IdleInertia(model, ws)).solve(open);
+  ws->vdot -= ws->motions.rightCols(idle) * SolveSymmetric(IdleInertia(model, ws), open);
   ForwardVelocities(model.tree, ws->v.data(), &ws->tree);
   ForwardAccelerations<double>(model.tree, ws->v.data(), ws->vdot.data(), &ws->tree);
   RecursiveNewtonEuler<double>(model.tree, model.tree.mechanism.gravity_W, ws->applied.data(),

@@ -1,9 +1,8 @@
 #include "vmech/dynamics/paper_joint.h"
 
-#include <Eigen/QR>
-
 #include "vmech/dynamics/hand_wrench.h"
 #include "vmech/kinematics/jacobian.h"
+#include "vmech/kinematics/linear_algebra.h"
 #include "vmech/kinematics/loops.h"
 
 namespace vmech {
@@ -41,7 +40,7 @@ MatrixXd DriveRows(const LoadModel& model, const LoadWorkspace& ws) {
 VectorXd MinimumNormWrenches(const MatrixXd& J, const MatrixXd& C, const VectorXd& tau) {
   MatrixXd A(tau.size(), J.rows() + C.rows());
   A << J.transpose(), C.transpose();
-  return A.completeOrthogonalDecomposition().solve(tau);
+  return MinimumNormSolution(A, tau);
 }
 
 void SolvePaperJoint(const LoadModel& model, LoadWorkspace* ws, PoseLoads* out) {

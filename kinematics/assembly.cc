@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "vmech/kinematics/closure.h"
+#include "vmech/kinematics/linear_algebra.h"
 #include "vmech/kinematics/loops.h"
 
 namespace vmech {
@@ -119,7 +119,7 @@ class PenaltyIteration {
   }
 
   VectorXd SolveFree(const MatrixXd& H, const VectorXd& gradient) const {
-    return Eigen::LDLT<MatrixXd>(H).solve(free_.cwiseProduct(gradient));
+    return SolveSymmetric(H, free_.cwiseProduct(gradient));
   }
 
   const KinematicTree& tree_;

@@ -1,11 +1,11 @@
 #include "vmech/kinematics/follow_hand.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <cmath>
 
 #include "vmech/kinematics/forward_kinematics.h"
 #include "vmech/kinematics/jacobian.h"
+#include "vmech/kinematics/linear_algebra.h"
 #include "vmech/kinematics/loops.h"
 
 namespace vmech {

@@ -9,8 +9,8 @@
 #include "vmech/kinematics/assembly.h"
 #include "vmech/kinematics/closure.h"
 #include "vmech/kinematics/forward_kinematics.h"
+#include "vmech/kinematics/linear_algebra.h"
 #include "vmech/kinematics/loops.h"
-#include "vmech/kinematics/null_space.h"
 
 namespace vmech {
 namespace {

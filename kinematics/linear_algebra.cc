@@ -1,9 +1,19 @@
-#include "vmech/kinematics/null_space.h"
+#include "vmech/kinematics/linear_algebra.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/QR>
+#include <Eigen/SVD>
 #include <cmath>
 
 namespace vmech {
+
+VectorXd SolveSymmetric(const MatrixXd& H, const VectorXd& b) {
+  return Eigen::LDLT<MatrixXd>(H).solve(b);
+}
+
+VectorXd MinimumNormSolution(const MatrixXd& A, const VectorXd& b) {
+  return A.completeOrthogonalDecomposition().solve(b);
+}
 
 NullSpace FindNullSpace(const MatrixXd& A, double tolerance) {
   const Eigen::Index n = A.cols();
@@ -26,6 +36,11 @@ std::vector<int> MostIndependentRows(const MatrixXd& A, int count) {
   std::vector<int> rows;
   for (int i = 0; i < count; ++i) rows.push_back(qr.colsPermutation().indices()[i]);
   return rows;
+}
+
+LeftSingularVectors FindLeftSingularVectors(const MatrixXd& A) {
+  const Eigen::JacobiSVD<MatrixXd> svd(A, Eigen::ComputeFullU);
+  return {svd.singularValues(), svd.matrixU()};
 }
 
 }  // namespace vmech

@@ -6,6 +6,15 @@
 
 namespace vmech {
 
+/// The dense decompositions that the offline analyses use, each compiled once. None in the pose
+/// kernels.
+
+/// x of H x = b by L D L' with pivoting; H symmetric positive semidefinite.
+VectorXd SolveSymmetric(const MatrixXd& H, const VectorXd& b);
+
+/// The shortest x that minimises |A x - b|, by complete orthogonal decomposition.
+VectorXd MinimumNormSolution(const MatrixXd& A, const VectorXd& b);
+
 /// Rank and null space of a matrix by Householder QR of its transpose with column pivoting.
 struct NullSpace {
   int rank = 0;
@@ -18,5 +27,12 @@ NullSpace FindNullSpace(const MatrixXd& A, double tolerance);
 
 /// The first `count` rows of A that column pivoting of A' chooses: the best-conditioned ones.
 std::vector<int> MostIndependentRows(const MatrixXd& A, int count);
+
+/// Singular values, largest first, and all left singular vectors [rows, rows].
+struct LeftSingularVectors {
+  VectorXd values;
+  MatrixXd vectors;
+};
+LeftSingularVectors FindLeftSingularVectors(const MatrixXd& A);
 
 }  // namespace vmech

@@ -1,0 +1,151 @@
+#include "vmech/apps/check.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <utility>
+
+namespace vmech {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string JointEnds(const Mechanism& m, const Joint& joint) {
+  auto end = [&](AnchorId id) { return m.links[id.link].name + "/" + m.anchor(id).name; };
+  return end(joint.first) + " - " + end(joint.second);
+}
+
+std::vector<std::string> LoopJoints(const KinematicTree& tree, const Loop& loop) {
+  std::vector<std::string> names;
+  for (const LoopNode& n : loop.path) {
+    const TreeNode& node = tree.nodes[n.node];
+    if (tree.placements[node.joint].tree_node == n.node) {
+      names.push_back(tree.mechanism.joints[node.joint].name);
+    }
+  }
+  return names;
+}
+
+/// Coordinates of the tree joints in the assembled pose, in degrees and millimetres.
+std::string Position(const KinematicTree& tree, const VectorXd& q, int joint) {
+  std::string text;
+  for (const TreeNode& node : tree.nodes) {
+    if (node.joint != joint || node.q < 0) continue;
+    if (!text.empty()) text += ", ";
+    if (node.motion == NodeMotion::kPrismatic) {
+      text += fmt::format("{:.6g} mm", 1000 * q[node.q]);
+    } else if (node.motion == NodeMotion::kSpherical) {
+      text += fmt::format("({:.5f} {:.5f} {:.5f} {:.5f})", q[node.q], q[node.q + 1], q[node.q + 2],
+                          q[node.q + 3]);
+    } else {
+      text += fmt::format("{:.6g} deg", q[node.q] * 180 / std::numbers::pi);
+    }
+  }
+  return text.empty() ? (tree.placements[joint].tree_node < 0 ? "cut" : "-") : text;
+}
+
+std::string MobilityWords(const MechanismCheck& check) {
+  const Mobility& m = check.mobility;
+  std::string text =
+      fmt::format("mobility    {}   (Gruebler's count {}{})\n", m.mobility, m.gruebler,
+                  m.redundant > 0 ? fmt::format(" + {} redundant equation(s)", m.redundant) : "");
+  text += fmt::format("equations   {} of the loops, rank {}\n", check.tree.rows, m.rank);
+  if (m.singular_here) {
+    text += "            the assembled pose is singular (a dead centre); rank judged beside it\n";
+  }
+  std::vector<std::string> still;
+  for (size_t j = 0; j < m.joint_moves.size(); ++j) {
+    const Joint& joint = check.tree.mechanism.joints[j];
+    if (!m.joint_moves[j] && joint.type != JointType::kWeld) still.push_back(joint.name);
+  }
+  if (!still.empty()) text += fmt::format("locked      {}\n", fmt::join(still, ", "));
+  return text;
+}
+
+}  // namespace
+
+MechanismCheck CheckMechanism(Mechanism mechanism) {
+  MechanismCheck check;
+  check.tree = BuildKinematicTree(std::move(mechanism));
+  VectorXd q = StartCoordinates(check.tree);
+  check.assembly = Assemble(check.tree, {}, &q);
+  check.mobility.q_general = q;
+  if (!check.assembly.closed) return check;
+  check.mobility = AnalyseMobility(check.tree, q);
+  check.mobility.q_general = q;
+  return check;
+}
+
+std::string TextReport(const MechanismCheck& check) {
+  const Mechanism& m = check.tree.mechanism;
+  double mass = 0;
+  for (const Link& link : m.links) mass += link.mass_properties.mass;
+  std::string text = fmt::format("{}\n\n", m.name);
+  text += fmt::format("links       {}, {:.6g} kg in all, ground '{}'\n", m.links.size(), mass,
+                      m.links[m.ground].name);
+  for (const Link& link : m.links) {
+    text += fmt::format("  {:<18}{:>10.4g} kg   {} anchors\n", link.name, link.mass_properties.mass,
+                        link.anchors.size());
+  }
+  text += fmt::format("joints      {}\n", m.joints.size());
+  for (size_t j = 0; j < m.joints.size(); ++j) {
+    const Joint& joint = m.joints[j];
+    text += fmt::format("  {:<18}{:<12} {:<36} {}\n", joint.name, NameOf(joint.type),
+                        JointEnds(m, joint),
+                        Position(check.tree, check.mobility.q_general, static_cast<int>(j)));
+  }
+  text += fmt::format("loops       {}\n", check.tree.loops.size());
+  for (const Loop& loop : check.tree.loops) {
+    text += fmt::format("  cut at {:<10} {} equations, through {}\n", m.joints[loop.joint].name,
+                        loop.rows, fmt::join(LoopJoints(check.tree, loop), ", "));
+  }
+  if (!check.assembly.closed) return text + "\nNOT ASSEMBLED: " + check.assembly.message + "\n";
+  text += MobilityWords(check);
+  text += fmt::format("closure     {:.1e} of the length {:.4g} m, from {:.1e} as the file has it\n",
+                      check.assembly.error, check.tree.length, check.assembly.start_error);
+  for (const Grasp& grasp : m.grasps) {
+    text += fmt::format("grasp       {} on {}, {}\n", grasp.name, m.links[grasp.link].name,
+                        grasp.kind == GraspKind::kRigid ? "rigid" : "point");
+  }
+  return text;
+}
+
+std::string JsonReport(const MechanismCheck& check) {
+  const Mechanism& m = check.tree.mechanism;
+  Json json{{"mechanism", m.name}, {"ground", m.links[m.ground].name}};
+  for (const Link& link : m.links) {
+    json["links"].push_back({{"name", link.name}, {"mass", link.mass_properties.mass}});
+  }
+  for (size_t j = 0; j < m.joints.size(); ++j) {
+    const Joint& joint = m.joints[j];
+    Json entry{{"name", joint.name},
+               {"type", NameOf(joint.type)},
+               {"cut", check.tree.placements[j].tree_node < 0}};
+    if (check.assembly.closed) entry["moves"] = static_cast<bool>(check.mobility.joint_moves[j]);
+    json["joints"].push_back(entry);
+  }
+  json["loops"] = Json::array();
+  for (const Loop& loop : check.tree.loops) {
+    json["loops"].push_back({{"cut", m.joints[loop.joint].name},
+                             {"equations", loop.rows},
+                             {"through", LoopJoints(check.tree, loop)}});
+  }
+  json["assembled"] = check.assembly.closed;
+  json["closure_error"] = check.assembly.error;
+  json["start_error"] = check.assembly.start_error;
+  json["characteristic_length"] = check.tree.length;
+  if (!check.assembly.closed) {
+    json["message"] = check.assembly.message;
+  } else {
+    json["mobility"] = check.mobility.mobility;
+    json["gruebler"] = check.mobility.gruebler;
+    json["rank"] = check.mobility.rank;
+    json["redundant_equations"] = check.mobility.redundant;
+    json["singular_start"] = check.mobility.singular_here;
+  }
+  return json.dump(2) + "\n";
+}
+
+}  // namespace vmech

@@ -1,0 +1,85 @@
+// The vmech command: takes the command line apart and reports errors; no mathematics here.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <stdexcept>
+
+#include "vmech/apps/commands.h"
+#include "vmech/mechanisms/document.h"
+
+namespace {
+
+constexpr const char* kExitCodes =
+    "Exit codes: 0 done; 1 command line; 2 a file is wrong; 3 the loops do not close or the "
+    "motion\n"
+    "cannot be followed; 4 done, but no bearing of the catalogue meets the requirements; 5 a "
+    "fault\n"
+    "of vmech.";
+
+constexpr const char* kCheckHelp =
+    "Says what vmech understands of a mechanism file: links, joints, loops and where they are "
+    "cut,\n"
+    "mobility, redundant equations, and how well the loops close. Everything that is wrong with "
+    "the\n"
+    "file is listed at once, as file:line:column.";
+
+constexpr const char* kLoadsHelp =
+    "Moves a mechanism as the study file says and writes the wrench at every joint, which of its\n"
+    "components are certain, and the bearings that will carry it:\n"
+    "  loads.csv      joint wrenches and drive forces at every pose\n"
+    "  motion.csv     pose, velocity and acceleration of every link\n"
+    "  certainty.csv  what statics determines and what it does not\n"
+    "  bearings.csv   the bearing chosen at every position\n"
+    "  summary.json   the figures that matter, for programs\n"
+    "  report.html    all of it to read and hand on";
+
+int Run(int argc, char** argv) {
+  CLI::App app{"vmech: mechanisms, their motion, the loads on their joints, and bearings for them"};
+  app.set_version_flag("--version", std::string("vmech ") + VMECH_VERSION);
+  app.require_subcommand(1);
+  app.footer(kExitCodes);
+
+  vmech::CheckArguments check;
+  CLI::App* check_command = app.add_subcommand("check", kCheckHelp);
+  check_command->add_option("MECHANISM", check.mechanism, "mechanism file, YAML or JSON")
+      ->required();
+  check_command->add_flag("--json", check.json, "print JSON instead of text");
+
+  vmech::LoadsArguments loads;
+  CLI::App* loads_command = app.add_subcommand("loads", kLoadsHelp);
+  loads_command->add_option("STUDY", loads.study, "study file, YAML or JSON")->required();
+  loads_command->add_option("--out", loads.out,
+                            "folder for the results (default: <study>-loads in this folder)");
+  loads_command->add_option("--threads", loads.threads, "threads; 0 for all processors")
+      ->check(CLI::Range(0, 64))
+      ->capture_default_str();
+  loads_command->add_flag("-q,--quiet", loads.quiet, "print nothing but errors");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? vmech::kSuccess : vmech::kBadUsage;
+  }
+  return check_command->parsed() ? RunCheck(check) : RunLoads(loads);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return Run(argc, argv);
+  } catch (const vmech::FileErrors& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return vmech::kBadInput;
+  } catch (const std::invalid_argument& error) {
+    fmt::print(stderr, "vmech: {}\n", error.what());
+    return vmech::kBadInput;
+  } catch (const std::runtime_error& error) {
+    fmt::print(stderr, "vmech: {}\n", error.what());
+    return vmech::kNoSolution;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "vmech: internal error: {}\n", error.what());
+    return vmech::kInternalError;
+  }
+}
