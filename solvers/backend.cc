@@ -1,6 +1,9 @@
 #include "vmech/solvers/backend.h"
 
 #include "vmech/solvers/augmented_lagrangian.h"
+#include "vmech/solvers/ipopt.h"
+#include "vmech/solvers/kinsol.h"
+#include "vmech/solvers/nlopt.h"
 #include "vmech/solvers/nullspace.h"
 #include "vmech/solvers/penalty.h"
 
@@ -19,18 +22,20 @@ struct Entry {
   Summary (*solve)(ConstrainedLeastSquares&, const StoppingRule&, const VectorXd&);
 };
 
+template <typename Options>
+Summary SolveByDefault(ConstrainedLeastSquares& problem, const StoppingRule& stopping,
+                       const VectorXd& x0) {
+  return SolveWith(Options{}, problem, stopping, x0);
+}
+
 // In the order of the enumeration.
 constexpr Entry kEntries[] = {
-    {"penalty", [](auto& problem, const auto& stopping,
-                   const auto& x0) { return SolveWith(PenaltyOptions{}, problem, stopping, x0); }},
-    {"augmented_lagrangian",
-     [](auto& problem, const auto& stopping, const auto& x0) {
-       return SolveWith(AugmentedLagrangianOptions{}, problem, stopping, x0);
-     }},
-    {"nullspace",
-     [](auto& problem, const auto& stopping, const auto& x0) {
-       return SolveWith(NullspaceOptions{}, problem, stopping, x0);
-     }},
+    {"penalty", SolveByDefault<PenaltyOptions>},
+    {"augmented_lagrangian", SolveByDefault<AugmentedLagrangianOptions>},
+    {"nullspace", SolveByDefault<NullspaceOptions>},
+    {"ipopt", SolveByDefault<IpoptOptions>},
+    {"nlopt_slsqp", SolveByDefault<NloptOptions>},
+    {"kinsol", SolveByDefault<KinsolOptions>},
 };
 static_assert(std::size(kEntries) == kAllBackends.size());
 

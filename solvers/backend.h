@@ -15,12 +15,14 @@ enum class Backend {
   kPenalty,
   kAugmentedLagrangian,
   kNullspace,
+  kIpopt,
+  kNloptSlsqp,
+  kKinsol,
 };
 
 inline constexpr std::array kAllBackends = {
-    Backend::kPenalty,
-    Backend::kAugmentedLagrangian,
-    Backend::kNullspace,
+    Backend::kPenalty, Backend::kAugmentedLagrangian, Backend::kNullspace,
+    Backend::kIpopt,   Backend::kNloptSlsqp,          Backend::kKinsol,
 };
 
 /// The name by which files and command lines know a back end.

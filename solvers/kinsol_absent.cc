@@ -1,0 +1,17 @@
+#include "vmech/solvers/kinsol.h"
+#include "vmech/solvers/run.h"
+
+namespace vmech {
+
+void KinsolOptions::Validate() const {
+  stopping.Validate();
+}
+
+Summary Solve(ConstrainedLeastSquares& problem, const KinsolOptions& options, const VectorXd& x0) {
+  return Run("kinsol", problem, options.stopping, x0, [](CountedProblem&, VectorXd*) {
+    return Outcome{SolveStatus::kUnavailable,
+                   "vmech was built without KINSOL; install libsundials-dev and build again"};
+  });
+}
+
+}  // namespace vmech
