@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <utility>
@@ -11,6 +12,10 @@ namespace vmech {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+std::string Count(size_t number, std::string_view what) {
+  return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
+}
 
 std::string JointEnds(const Mechanism& m, const Joint& joint) {
   auto end = [&](AnchorId id) { return m.links[id.link].name + "/" + m.anchor(id).name; };
@@ -37,8 +42,8 @@ std::string Position(const KinematicTree& tree, const VectorXd& q, int joint) {
     if (node.motion == NodeMotion::kPrismatic) {
       text += fmt::format("{:.6g} mm", 1000 * q[node.q]);
     } else if (node.motion == NodeMotion::kSpherical) {
-      text += fmt::format("({:.5f} {:.5f} {:.5f} {:.5f})", q[node.q], q[node.q + 1], q[node.q + 2],
-                          q[node.q + 3]);
+      text += fmt::format("quaternion {:.4f} {:.4f} {:.4f} {:.4f}", q[node.q], q[node.q + 1],
+                          q[node.q + 2], q[node.q + 3]);
     } else {
       text += fmt::format("{:.6g} deg", q[node.q] * 180 / std::numbers::pi);
     }
@@ -46,12 +51,63 @@ std::string Position(const KinematicTree& tree, const VectorXd& q, int joint) {
   return text.empty() ? (tree.placements[joint].tree_node < 0 ? "cut" : "-") : text;
 }
 
+constexpr size_t kNameWidth = 17;  // of the column of names, where none is longer
+
+std::string LinkLines(const Mechanism& m) {
+  double mass = 0;
+  size_t width = kNameWidth;
+  for (const Link& link : m.links) {
+    mass += link.mass_properties.mass;
+    width = std::max(width, link.name.size());
+  }
+  std::string text = fmt::format("links       {}, {:.6g} kg in all, ground '{}'\n", m.links.size(),
+                                 mass, m.links[m.ground].name);
+  for (const Link& link : m.links) {
+    text += fmt::format("  {:<{}} {:>10.4g} kg   {}\n", link.name, width, link.mass_properties.mass,
+                        Count(link.anchors.size(), "anchor"));
+  }
+  return text;
+}
+
+std::string JointLines(const MechanismCheck& check) {
+  const Mechanism& m = check.tree.mechanism;
+  size_t width = kNameWidth, ends = 0;
+  for (const Joint& joint : m.joints) {
+    width = std::max(width, joint.name.size());
+    ends = std::max(ends, JointEnds(m, joint).size());
+  }
+  std::string text = fmt::format("joints      {}\n", m.joints.size());
+  for (size_t j = 0; j < m.joints.size(); ++j) {
+    const Joint& joint = m.joints[j];
+    text += fmt::format("  {:<{}} {:<11}  {:<{}}  {}\n", joint.name, width, NameOf(joint.type),
+                        JointEnds(m, joint), ends,
+                        Position(check.tree, check.mobility.q_general, static_cast<int>(j)));
+  }
+  return text;
+}
+
+std::string LoopLines(const KinematicTree& tree) {
+  const std::vector<Joint>& joints = tree.mechanism.joints;
+  size_t width = 10;
+  for (const Loop& loop : tree.loops) width = std::max(width, joints[loop.joint].name.size());
+  std::string text = fmt::format("loops       {}\n", tree.loops.size());
+  for (const Loop& loop : tree.loops) {
+    text += fmt::format("  cut at {:<{}} {}, through {}\n", joints[loop.joint].name, width,
+                        Count(static_cast<size_t>(loop.rows), "equation"),
+                        fmt::join(LoopJoints(tree, loop), ", "));
+  }
+  return text;
+}
+
 std::string MobilityWords(const MechanismCheck& check) {
   const Mobility& m = check.mobility;
+  const size_t redundant = static_cast<size_t>(m.redundant);
   std::string text =
       fmt::format("mobility    {}   (Gruebler's count {}{})\n", m.mobility, m.gruebler,
-                  m.redundant > 0 ? fmt::format(" + {} redundant equation(s)", m.redundant) : "");
-  text += fmt::format("equations   {} of the loops, rank {}\n", check.tree.rows, m.rank);
+                  redundant > 0 ? " + " + Count(redundant, "redundant equation") : "");
+  if (!check.tree.loops.empty()) {
+    text += fmt::format("equations   {} of the loops, rank {}\n", check.tree.rows, m.rank);
+  }
   if (m.singular_here) {
     text += "            the assembled pose is singular (a dead centre); rank judged beside it\n";
   }
@@ -80,31 +136,15 @@ MechanismCheck CheckMechanism(Mechanism mechanism) {
 
 std::string TextReport(const MechanismCheck& check) {
   const Mechanism& m = check.tree.mechanism;
-  double mass = 0;
-  for (const Link& link : m.links) mass += link.mass_properties.mass;
-  std::string text = fmt::format("{}\n\n", m.name);
-  text += fmt::format("links       {}, {:.6g} kg in all, ground '{}'\n", m.links.size(), mass,
-                      m.links[m.ground].name);
-  for (const Link& link : m.links) {
-    text += fmt::format("  {:<18}{:>10.4g} kg   {} anchors\n", link.name, link.mass_properties.mass,
-                        link.anchors.size());
-  }
-  text += fmt::format("joints      {}\n", m.joints.size());
-  for (size_t j = 0; j < m.joints.size(); ++j) {
-    const Joint& joint = m.joints[j];
-    text += fmt::format("  {:<18}{:<12} {:<36} {}\n", joint.name, NameOf(joint.type),
-                        JointEnds(m, joint),
-                        Position(check.tree, check.mobility.q_general, static_cast<int>(j)));
-  }
-  text += fmt::format("loops       {}\n", check.tree.loops.size());
-  for (const Loop& loop : check.tree.loops) {
-    text += fmt::format("  cut at {:<10} {} equations, through {}\n", m.joints[loop.joint].name,
-                        loop.rows, fmt::join(LoopJoints(check.tree, loop), ", "));
-  }
+  std::string text = fmt::format("{}\n\n", m.name) + LinkLines(m) + JointLines(check);
+  text += LoopLines(check.tree);
   if (!check.assembly.closed) return text + "\nNOT ASSEMBLED: " + check.assembly.message + "\n";
   text += MobilityWords(check);
-  text += fmt::format("closure     {:.1e} of the length {:.4g} m, from {:.1e} as the file has it\n",
-                      check.assembly.error, check.tree.length, check.assembly.start_error);
+  if (!check.tree.loops.empty()) {
+    text += fmt::format(
+        "closure     {:.2g} of the length {:.4g} m, assembled from {:.2g} as the file has it\n",
+        check.assembly.error, check.tree.length, check.assembly.start_error);
+  }
   for (const Grasp& grasp : m.grasps) {
     text += fmt::format("grasp       {} on {}, {}\n", grasp.name, m.links[grasp.link].name,
                         grasp.kind == GraspKind::kRigid ? "rigid" : "point");

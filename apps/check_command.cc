@@ -1,13 +1,34 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "vmech/apps/check.h"
 #include "vmech/apps/commands.h"
+#include "vmech/mechanisms/document.h"
 #include "vmech/mechanisms/reader.h"
 
 namespace vmech {
 
+namespace {
+
+Mechanism ReadOrRedirect(const std::filesystem::path& path) {
+  try {
+    return ReadMechanism(path);
+  } catch (const FileErrors& errors) {
+    const bool study =
+        std::any_of(errors.errors().begin(), errors.errors().end(),
+                    [](const FileError& error) { return error.path == "vmech_study"; });
+    if (!study) throw;
+    throw FileErrors(path.string(),
+                     "is a study; `vmech loads` runs it, `vmech check` takes the mechanism that "
+                     "it names");
+  }
+}
+
+}  // namespace
+
 int RunCheck(const CheckArguments& arguments) {
-  const MechanismCheck check = CheckMechanism(ReadMechanism(arguments.mechanism));
+  const MechanismCheck check = CheckMechanism(ReadOrRedirect(arguments.mechanism));
   fmt::print("{}", arguments.json ? JsonReport(check) : TextReport(check));
   return check.assembly.closed ? kSuccess : kNoSolution;
 }

@@ -1,16 +1,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <thread>
 
 #include "vmech/apps/commands.h"
 #include "vmech/apps/output_folder.h"
 #include "vmech/apps/progress_bar.h"
+#include "vmech/apps/report/joint_section.h"
 #include "vmech/apps/report/load_report.h"
 #include "vmech/apps/study.h"
 #include "vmech/apps/study_reader.h"
 #include "vmech/apps/tables.h"
+#include "vmech/dynamics/bearings/rating.h"
 
 namespace vmech {
 namespace {
@@ -20,31 +21,90 @@ int Threads(const LoadsArguments& arguments) {
   return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 64);
 }
 
+StudyFile ReadOrRedirect(const std::filesystem::path& path) {
+  try {
+    return ReadStudy(path);
+  } catch (const FileErrors& errors) {
+    const bool mechanism = std::any_of(
+        errors.errors().begin(), errors.errors().end(),
+        [&](const FileError& error) { return error.path == "vmech" && error.file == path; });
+    if (!mechanism) throw;
+    throw FileErrors(path.string(),
+                     "is a mechanism; `vmech check` reads it, `vmech loads` takes a study that "
+                     "names it (docs/study-format.md)");
+  }
+}
+
+/// The components with a verdict, as in ": fz mx my"; empty if there are none.
+std::string Components(const JointCertainty& certainty, Certainty verdict) {
+  constexpr const char* kNames[] = {"fx", "fy", "fz", "mx", "my", "mz"};
+  std::string names;
+  for (size_t i = 0; i < certainty.size(); ++i) {
+    if (certainty[i] == verdict) names += std::string(names.empty() ? ": " : " ") + kNames[i];
+  }
+  return names;
+}
+
+std::string CertaintyInWords(const JointCertainty& certainty) {
+  std::string words;
+  for (const Certainty verdict : {Certainty::kNotDetermined, Certainty::kSingular}) {
+    const std::string components = Components(certainty, verdict);
+    if (components.empty()) continue;
+    words += fmt::format("{}{}{}", words.empty() ? "" : "; ", NameOf(verdict), components);
+  }
+  return words.empty() ? "certain" : words;
+}
+
 std::string JointLines(const StudyFile& file, const LoadStudyResult& loads) {
-  std::string text = "  joint                radial     axial   tilting moment   (peaks)\n";
-  for (size_t j = 0; j < file.study.mechanism.joints.size(); ++j) {
-    double radial = 0, axial = 0, tilting = 0;
-    for (const PoseLoads& pose : loads.poses) {
-      radial = std::max(radial, pose.joints[j].force.head<2>().norm());
-      axial = std::max(axial, std::abs(pose.joints[j].force.z()));
-      tilting = std::max(tilting, pose.joints[j].moment.head<2>().norm());
-    }
-    const bool open = std::any_of(loads.certainty[j].begin(), loads.certainty[j].end(),
-                                  [](Certainty c) { return c == Certainty::kNotDetermined; });
-    text +=
-        fmt::format("  {:<16} {:>8.4g} N {:>7.3g} N   {:>10.4g} N m{}\n",
-                    file.study.mechanism.joints[j].name, radial, axial, tilting,
-                    open ? fmt::format("   partly by the rule '{}'", NameOf(file.study.rule)) : "");
+  const std::vector<Joint>& joints = file.study.mechanism.joints;
+  size_t width = 16;
+  for (const Joint& joint : joints) width = std::max(width, joint.name.size());
+  std::string text = fmt::format("  {:<{}} {:>11} {:>11} {:>14}   statics\n", "largest loads",
+                                 width, "radial [N]", "axial [N]", "tilting [N m]");
+  const double negligible = Negligible(loads);
+  const auto shown = [negligible](double value) { return value <= negligible ? 0.0 : value; };
+  for (size_t j = 0; j < joints.size(); ++j) {
+    const JointPeaks peaks = PeaksOf(loads, j);
+    text += fmt::format("  {:<{}} {:>11.4g} {:>11.4g} {:>14.4g}   {}\n", joints[j].name, width,
+                        shown(peaks.radial), shown(peaks.axial), shown(peaks.tilting),
+                        CertaintyInWords(loads.certainty[j]));
+  }
+  return text;
+}
+
+std::string RuleLine(const StudyFile& file, const LoadStudyResult& loads) {
+  const bool open = std::any_of(loads.certainty.begin(), loads.certainty.end(),
+                                [](const JointCertainty& certainty) {
+                                  return !Components(certainty, Certainty::kNotDetermined).empty();
+                                });
+  if (!open) return "";
+  return fmt::format("  what statics does not determine follows the rule '{}'\n",
+                     NameOf(file.study.rule));
+}
+
+std::string BearingLines(const StudyFile& file, const BearingRequest& request,
+                         const BearingOutcome& outcome) {
+  const JointBearings& bearings = outcome.bearings;
+  std::string text = fmt::format(
+      "bearings of {}{}\n", file.study.mechanism.joints[outcome.joint].name,
+      bearings.certainty == LoadCertainty::kDependsOnRule
+          ? fmt::format(", for loads that follow the rule '{}'", NameOf(file.study.rule))
+          : "");
+  for (size_t k = 0; k < bearings.selections.size(); ++k) {
+    text += fmt::format("  at {:>5g} mm  {}\n", 1000 * request.arrangement.positions[k],
+                        bearings.selections[k].message);
+  }
+  if (bearings.complete() && bearings.selections.size() > 1) {
+    text += fmt::format("  both         life {}\n", FormatHours(bearings.system_life_hours));
   }
   return text;
 }
 
 void PrintSummary(const StudyFile& file, const StudyOutcome& outcome, const OutputFolder& folder) {
   fmt::print("{}: {}\n{}\n", file.name, file.motion, outcome.loads.BriefReport());
-  fmt::print("{}", JointLines(file, outcome.loads));
-  for (const BearingOutcome& bearing : outcome.bearings) {
-    fmt::print("  {}: {}\n", file.study.mechanism.joints[bearing.joint].name,
-               bearing.bearings.BriefReport());
+  fmt::print("{}{}", JointLines(file, outcome.loads), RuleLine(file, outcome.loads));
+  for (size_t i = 0; i < outcome.bearings.size(); ++i) {
+    fmt::print("{}", BearingLines(file, file.bearings[i], outcome.bearings[i]));
   }
   for (const std::string& warning : outcome.warnings) fmt::print("warning: {}\n", warning);
   fmt::print("written to {}\n", (folder.path() / "report.html").string());
@@ -53,7 +113,7 @@ void PrintSummary(const StudyFile& file, const StudyOutcome& outcome, const Outp
 }  // namespace
 
 int RunLoads(const LoadsArguments& arguments) {
-  const StudyFile file = ReadStudy(arguments.study);
+  const StudyFile file = ReadOrRedirect(arguments.study);
   LoadStudyOptions options;
   options.threads = Threads(arguments);
   StudyOutcome outcome;

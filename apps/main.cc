@@ -35,7 +35,8 @@ constexpr const char* kLoadsHelp =
     "  report.html    all of it to read and hand on";
 
 int Run(int argc, char** argv) {
-  CLI::App app{"vmech: mechanisms, their motion, the loads on their joints, and bearings for them"};
+  CLI::App app{"vmech: mechanisms, their motion, the loads on their joints, and bearings for them",
+               "vmech"};
   app.set_version_flag("--version", std::string("vmech ") + VMECH_VERSION);
   app.require_subcommand(1);
   app.footer(kExitCodes);
@@ -43,16 +44,21 @@ int Run(int argc, char** argv) {
   vmech::CheckArguments check;
   CLI::App* check_command = app.add_subcommand("check", kCheckHelp);
   check_command->add_option("MECHANISM", check.mechanism, "mechanism file, YAML or JSON")
-      ->required();
+      ->required()
+      ->type_name("FILE");
   check_command->add_flag("--json", check.json, "print JSON instead of text");
 
   vmech::LoadsArguments loads;
   CLI::App* loads_command = app.add_subcommand("loads", kLoadsHelp);
-  loads_command->add_option("STUDY", loads.study, "study file, YAML or JSON")->required();
-  loads_command->add_option("--out", loads.out,
-                            "folder for the results (default: <study>-loads in this folder)");
+  loads_command->add_option("STUDY", loads.study, "study file, YAML or JSON")
+      ->required()
+      ->type_name("FILE");
+  loads_command
+      ->add_option("--out", loads.out,
+                   "folder for the results (default: <study>-loads in this folder)")
+      ->type_name("DIR");
   loads_command->add_option("--threads", loads.threads, "threads; 0 for all processors")
-      ->check(CLI::Range(0, 64))
+      ->check(CLI::Range(0, 64, "0..64"))
       ->capture_default_str();
   loads_command->add_flag("-q,--quiet", loads.quiet, "print nothing but errors");
 

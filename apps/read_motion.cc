@@ -288,7 +288,9 @@ std::string MotionInWords(const Node& node) {
     if (drive["rpm"]) words += fmt::format(" at {:g} rpm", drive["rpm"].Number());
     if (drive["speed"]) words += " at constant speed";
     if (drive["table"]) words += " through " + drive["table"].Text();
-    if (drive["turns"]) words += fmt::format(", {:g} turns", drive["turns"].Number());
+    if (drive["turns"])
+      words += fmt::format(", {:g} {}", drive["turns"].Number(),
+                           drive["turns"].Number() == 1 ? "turn" : "turns");
   }
   return words;
 }

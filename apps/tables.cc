@@ -1,5 +1,6 @@
 #include "vmech/apps/tables.h"
 
+#include <fmt/compile.h>
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -30,7 +31,7 @@ class Row {
     if (!first_) text_.push_back(',');
     first_ = false;
     // Without the sign of a zero, which says nothing.
-    fmt::format_to(std::back_inserter(text_), "{}", value == 0 ? 0.0 : value);
+    fmt::format_to(std::back_inserter(text_), FMT_COMPILE("{}"), value == 0 ? 0.0 : value);
   }
   template <typename Vector>
   void AddAll(const Vector& v) {

@@ -58,19 +58,18 @@ double JointMotion(const KinematicTree& tree, const TreeWorkspace<double>& ws, i
   return (twist(place.second_node) - twist(place.first_node)).cwiseAbs().maxCoeff();
 }
 
-std::vector<bool> MovingJoints(const KinematicTree& tree, const VectorXd& q,
-                               const MatrixXd& motions) {
+/// Marks the joints that one of the motions at q moves.
+void AddMovingJoints(const KinematicTree& tree, const VectorXd& q, const MatrixXd& motions,
+                     std::vector<bool>* moves) {
   TreeWorkspace<double> ws(tree);
   EvaluatePose(tree, q, &ws, false);
-  std::vector<bool> moves(tree.mechanism.joints.size(), false);
   for (Eigen::Index k = 0; k < motions.cols(); ++k) {
     const VectorXd v = motions.col(k);
     ForwardVelocities(tree, v.data(), &ws);
-    for (size_t j = 0; j < moves.size(); ++j) {
-      moves[j] = moves[j] || JointMotion(tree, ws, static_cast<int>(j)) > kMoves;
+    for (size_t j = 0; j < moves->size(); ++j) {
+      (*moves)[j] = (*moves)[j] || JointMotion(tree, ws, static_cast<int>(j)) > kMoves;
     }
   }
-  return moves;
 }
 
 /// Free motions at q as velocities [nv, mobility].
@@ -80,6 +79,13 @@ MatrixXd FreeMotions(const KinematicTree& tree, const NullSpace& space) {
 
 NullSpace SpaceAt(const KinematicTree& tree, const VectorXd& q) {
   return FindNullSpace(DimensionlessLoopJacobian(tree, q), kRankTolerance);
+}
+
+size_t IndexOfLargestRank(const std::vector<NullSpace>& spaces) {
+  const auto largest =
+      std::max_element(spaces.begin(), spaces.end(),
+                       [](const NullSpace& a, const NullSpace& b) { return a.rank < b.rank; });
+  return static_cast<size_t>(largest - spaces.begin());
 }
 
 MatrixXd Columns(const MatrixXd& A, const std::vector<int>& columns) {
@@ -100,20 +106,24 @@ MatrixXd DimensionlessLoopJacobian(const KinematicTree& tree, const VectorXd& q)
 Mobility AnalyseMobility(const KinematicTree& tree, const VectorXd& q) {
   Mobility result;
   result.gruebler = tree.nv - tree.rows;
-  NullSpace best = SpaceAt(tree, q);
-  const int rank_here = best.rank;
-  result.q_general = q;
-  for (const VectorXd& near : Neighbours(tree, q, FreeMotions(tree, best))) {
-    NullSpace space = SpaceAt(tree, near);
-    if (space.rank <= best.rank) continue;
-    best = std::move(space);
-    result.q_general = near;
+  std::vector<VectorXd> poses{q};
+  std::vector<NullSpace> spaces{SpaceAt(tree, q)};
+  for (VectorXd& near : Neighbours(tree, q, FreeMotions(tree, spaces[0]))) {
+    spaces.push_back(SpaceAt(tree, near));
+    poses.push_back(std::move(near));
   }
-  result.rank = best.rank;
-  result.singular_here = rank_here < best.rank;
-  result.mobility = tree.nv - best.rank;
-  result.redundant = tree.rows - best.rank;
-  result.joint_moves = MovingJoints(tree, result.q_general, FreeMotions(tree, best));
+  const size_t best = IndexOfLargestRank(spaces);
+  result.q_general = poses[best];
+  result.rank = spaces[best].rank;
+  result.singular_here = spaces[0].rank < result.rank;
+  result.mobility = tree.nv - result.rank;
+  result.redundant = tree.rows - result.rank;
+  // At one pose alone a joint may stand still for a moment, as a rocker does where it turns back.
+  result.joint_moves.assign(tree.mechanism.joints.size(), false);
+  for (size_t i = 0; i < poses.size(); ++i) {
+    if (spaces[i].rank < result.rank) continue;
+    AddMovingJoints(tree, poses[i], FreeMotions(tree, spaces[i]), &result.joint_moves);
+  }
   return result;
 }
 

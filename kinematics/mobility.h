@@ -16,7 +16,7 @@ struct Mobility {
   int mobility = 0;               ///< nv - rank
   int redundant = 0;              ///< rows - rank: equations that follow from the others
   bool singular_here = false;     ///< the rank is lower at the given pose
-  std::vector<bool> joint_moves;  ///< per joint of the mechanism, at a general pose
+  std::vector<bool> joint_moves;  ///< per joint of the mechanism, at any of these poses
   VectorXd q_general;             ///< the nearby closed pose that the above was read at [nq]
 };
 

@@ -108,7 +108,8 @@ std::string DescribeMotion(const LoadStudy& study, const LoadStudyResult& result
     const Grasp& grasp = study.mechanism.grasps[static_cast<size_t>(study.hand->grasp)];
     words += fmt::format("{}a hand leads the grasp {}", words.empty() ? "" : ", ", grasp.name);
   }
-  const double duration = poses.back().time - poses.front().time;
+  const double passage = poses.back().time - poses.front().time;
+  const double duration = study.cycle > 0 ? study.cycle : passage;
   const std::string over =
       duration > 0 ? fmt::format(" over {} s", plot::FormatShort(duration, 3)) : "";
   words += fmt::format("; {} {}{}", plot::FormatNumber(static_cast<double>(poses.size()), 0),

@@ -21,16 +21,6 @@ std::string Number(double value) {
   return plot::FormatSignificant(value, 4);
 }
 
-/// Loads below this are rounding beside what else the mechanism carries.
-double Negligible(const LoadStudyResult& result) {
-  double largest = 0;
-  for (size_t i = 0; i < result.certainty.size(); ++i) {
-    const JointPeaks peaks = PeaksOf(result, i);
-    largest = std::max({largest, peaks.radial, peaks.axial});
-  }
-  return 1e-9 * largest;
-}
-
 std::string NumberOrZero(double value, double negligible) {
   return std::abs(value) <= negligible ? "0" : Number(value);
 }
@@ -63,9 +53,9 @@ plot::LinePlot ForcePlot(const LoadStudy& study, const LoadStudyResult& result, 
   }
   plot::LinePlot plot;
   plot.title = "Load over the cycle";
-  plot.description = fmt::format("Joint {}: force {} up to {} N, {} up to {} N.",
-                                 study.mechanism.joints[joint].name, names[0], Number(peaks.radial),
-                                 names[1], Number(peaks.axial));
+  plot.description = fmt::format(
+      "Joint {}: force {} up to {} N, {} up to {} N.", study.mechanism.joints[joint].name, names[0],
+      NumberOrZero(peaks.radial, worth), names[1], NumberOrZero(peaks.axial, worth));
   plot.x = cycle.axis;
   plot.y = {"force", "N"};
   plot.series = {std::move(radial), std::move(axial)};
@@ -169,6 +159,15 @@ Markup JointSection(const LoadStudy& study, const LoadStudyResult& result, const
 }
 
 }  // namespace
+
+double Negligible(const LoadStudyResult& result) {
+  double largest = 0;
+  for (size_t i = 0; i < result.certainty.size(); ++i) {
+    const JointPeaks peaks = PeaksOf(result, i);
+    largest = std::max({largest, peaks.radial, peaks.axial});
+  }
+  return 1e-9 * largest;
+}
 
 JointPeaks PeaksOf(const LoadStudyResult& result, size_t joint) {
   JointPeaks peaks;

@@ -15,6 +15,9 @@ struct JointPeaks {
 /// Radial: across z of the joint's first anchor; axial: along z; tilting: moment across z.
 JointPeaks PeaksOf(const LoadStudyResult& result, size_t joint);
 
+/// Forces [N], and moments [N m], up to this are rounding beside what the mechanism carries.
+double Negligible(const LoadStudyResult& result);
+
 /// One line per joint: its peaks, where they occur, and the verdict.
 html::Markup JointOverview(const LoadStudy& study, const LoadStudyResult& result,
                            const Cycle& cycle);

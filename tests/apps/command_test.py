@@ -1,0 +1,424 @@
+"""command_test.py VMECH EXAMPLES: the vmech command as its users meet it."""
+
+import csv
+import html.parser
+import json
+import math
+import os
+import pathlib
+import pty
+import select
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+VMECH = ""
+EXAMPLES = pathlib.Path()
+
+# Degrees of freedom of every example, counted by hand from how it is built.
+MOBILITY = {
+    "andrews-squeezer": 1, "beam-on-three-supports": 0, "bennett": 1, "bricard": 1, "crank": 1,
+    "delta-robot": 3, "door-on-two-hinges": 1, "flyball-governor": 4, "four-bar": 1,
+    "marghitu-slider-crank": 1, "modelica-engine1a": 1, "modelica-four-bar": 1,
+    "n-window-four-bar": 1, "rssr": 2, "rsup": 1, "slider-crank": 1, "spherical-four-bar": 1,
+    "square-four-bar": 1, "stewart-gough": 6, "sundials-slider-crank": 1, "two-link-arm": 2,
+}
+OUTPUTS = {"loads.csv", "motion.csv", "certainty.csv", "bearings.csv", "summary.json",
+           "report.html"}
+WRENCH = ("fx", "fy", "fz", "mx", "my", "mz")
+MOTION = ("x", "y", "z", "qw", "qx", "qy", "qz", "vx", "vy", "vz", "wx", "wy", "wz", "ax", "ay",
+          "az", "alphax", "alphay", "alphaz")
+POWER_TOLERANCE = 1e-9  # of the largest term of the balance
+UNIT_TOLERANCE = 1e-12  # of a unit quaternion: rounding of a rotation matrix
+
+
+def vmech(*arguments, folder=None):
+    """Runs the command as a shell would, without a terminal."""
+    return subprocess.run([VMECH, *map(str, arguments)], cwd=folder, capture_output=True,
+                          text=True, stdin=subprocess.DEVNULL, timeout=120)
+
+
+def studies():
+    return sorted(EXAMPLES.glob("*-study.yaml"))
+
+
+def read_csv(path):
+    with open(path, newline="", encoding="utf-8") as file:
+        return list(csv.reader(file))
+
+
+class InFolder(unittest.TestCase):
+    """A test with a folder of its own that holds a copy of the examples."""
+
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="vmech-"))
+        self.addCleanup(shutil.rmtree, self.folder)
+        for source in EXAMPLES.iterdir():
+            shutil.copy(source, self.folder)
+
+    def run_vmech(self, *arguments):
+        return vmech(*arguments, folder=self.folder)
+
+    def edit(self, source, name, *changes):
+        """A copy of an example under a new name, with pieces of its text replaced."""
+        text = (self.folder / source).read_text(encoding="utf-8")
+        for old, new in changes:
+            self.assertIn(old, text)
+            text = text.replace(old, new)
+        (self.folder / name).write_text(text, encoding="utf-8")
+        return name
+
+    def names(self):
+        return sorted(path.name for path in self.folder.rglob("*"))
+
+
+class Help(unittest.TestCase):
+    def test_lists_subcommands_and_every_exit_code(self):
+        result = vmech("--help")
+        self.assertEqual(result.returncode, 0)
+        for word in ("check", "loads", "Exit codes", *(f"{code} " for code in range(6))):
+            self.assertIn(word, result.stdout)
+
+    def test_of_check_names_arguments_options_and_exit_codes(self):
+        result = vmech("check", "--help")
+        self.assertEqual(result.returncode, 0)
+        for word in ("vmech check", "MECHANISM", "--json", "YAML or JSON", "Exit codes"):
+            self.assertIn(word, result.stdout)
+
+    def test_of_loads_names_arguments_options_and_outputs(self):
+        result = vmech("loads", "--help")
+        self.assertEqual(result.returncode, 0)
+        for word in ("vmech loads", "STUDY", "--out", "--threads", "--quiet", "Exit codes",
+                     *OUTPUTS):
+            self.assertIn(word, result.stdout)
+
+    def test_version_is_name_and_number(self):
+        self.assertRegex(vmech("--version").stdout, r"^vmech \d+\.\d+\.\d+\n$")
+
+    def test_wrong_command_lines_are_code_1_on_standard_error(self):
+        for arguments in ((), ("chekc",), ("check",), ("loads",), ("check", "a", "b"),
+                          ("loads", "s.yaml", "--threads", "65"), ("loads", "s.yaml", "--outt")):
+            with self.subTest(arguments=arguments):
+                result = vmech(*arguments)
+                self.assertEqual(result.returncode, 1)
+                self.assertEqual(result.stdout, "")
+                self.assertIn("--help", result.stderr)
+
+
+class Check(InFolder):
+    def test_tells_mobility_of_every_example(self):
+        mechanisms = {path.stem for path in EXAMPLES.glob("*.yaml")}
+        mechanisms -= {path.stem for path in studies()}
+        self.assertEqual(mechanisms, set(MOBILITY))
+        for name, mobility in MOBILITY.items():
+            with self.subTest(name=name):
+                result = self.run_vmech("check", name + ".yaml", "--json")
+                self.assertEqual(result.returncode, 0, result.stderr)
+                report = json.loads(result.stdout)
+                self.assertTrue(report["assembled"])
+                self.assertEqual(report["mobility"], mobility)
+                self.assertEqual(report["mobility"],
+                                 report["gruebler"] + report["redundant_equations"])
+                self.assertEqual(len(report["loops"]), sum(j["cut"] for j in report["joints"]))
+
+    def test_says_in_text_what_it_says_in_json(self):
+        for name, mobility in MOBILITY.items():
+            with self.subTest(name=name):
+                result = self.run_vmech("check", name + ".yaml")
+                self.assertEqual(result.returncode, 0, result.stderr)
+                self.assertRegex(result.stdout, rf"(?m)^mobility +{mobility}\b")
+                report = json.loads(self.run_vmech("check", name + ".yaml", "--json").stdout)
+                for part in report["links"] + report["joints"]:
+                    self.assertIn(part["name"], result.stdout)
+
+    def test_calls_nothing_locked_that_merely_stands_still_for_a_moment(self):
+        # Both start at a pose where the velocity of some joints passes through zero.
+        for name in ("andrews-squeezer", "sundials-slider-crank"):
+            with self.subTest(name=name):
+                self.assertNotIn("locked", self.run_vmech("check", name + ".yaml").stdout)
+        self.assertRegex(self.run_vmech("check", "beam-on-three-supports.yaml").stdout,
+                         r"(?m)^locked +left, middle_track, middle, right_track, right$")
+
+    def test_lists_every_error_with_file_line_and_column(self):
+        self.edit("slider-crank.yaml", "bad.yaml", ("crank/pin,", "cranc/pin,"),
+                  ("mass: 0.35", "mass: -0.35"), ("type: prismatic", "type: prismatik"))
+        result = self.run_vmech("check", "bad.yaml")
+        self.assertEqual((result.returncode, result.stdout), (2, ""))
+        lines = result.stderr.splitlines()
+        self.assertEqual(len(lines), 3)
+        for line in lines:
+            self.assertRegex(line, r"^bad\.yaml:\d+:\d+: ")
+        self.assertIn("did you mean 'crank/pin'?", result.stderr)
+        self.assertIn("did you mean 'prismatic'?", result.stderr)
+
+    def test_loop_that_cannot_be_closed_is_code_3_and_says_where(self):
+        self.edit("four-bar.yaml", "open.yaml", ("[1.1, 0, 0]", "[11, 0, 0]"))
+        result = self.run_vmech("check", "open.yaml")
+        self.assertEqual(result.returncode, 3)
+        self.assertIn("NOT ASSEMBLED", result.stdout)
+        broken = json.loads(self.run_vmech("check", "open.yaml", "--json").stdout)
+        self.assertFalse(broken["assembled"])
+        self.assertIn("message", broken)
+
+    def test_points_from_a_study_to_the_other_command_and_back(self):
+        result = self.run_vmech("check", "slider-crank-study.yaml")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("vmech loads", result.stderr)
+        result = self.run_vmech("loads", "slider-crank.yaml")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("vmech check", result.stderr)
+
+    def test_absent_file_and_folder_are_code_2(self):
+        for name in ("nothing.yaml", "."):
+            result = self.run_vmech("check", name)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn("cannot be opened", result.stderr)
+
+
+class WellFormed(html.parser.HTMLParser):
+    """Checks that every element of a page is closed in its turn and that it loads nothing."""
+
+    VOID = {"meta", "br", "hr", "img", "link", "input"}
+
+    def __init__(self):
+        super().__init__()
+        self.open, self.faults, self.seen = [], [], set()
+
+    def handle_starttag(self, tag, attributes):
+        self.seen.add(tag)
+        if tag not in self.VOID:
+            self.open.append(tag)
+        for key, value in attributes:
+            if key in ("src", "href") and value and not value.startswith("#"):
+                self.faults.append(f"{tag} loads {value}")
+
+    def handle_startendtag(self, tag, attributes):
+        self.seen.add(tag)
+
+    def handle_endtag(self, tag):
+        if not self.open or self.open.pop() != tag:
+            self.faults.append(f"</{tag}> at {self.getpos()}")
+
+
+class Loads(InFolder):
+    def expect_loads_header(self, out, summary):
+        table = read_csv(out / "loads.csv")
+        drives = summary["drives"]
+        one = len(drives) == 1
+        names = ["drive" if one else "drive." + drive["joint"] for drive in drives]
+        hand = ["handle." + c for c in (*WRENCH, "distance")] if not drives else []
+        self.assertEqual(
+            table[0],
+            ["t", *(name + ".position" for name in names),
+             *(f"{joint['name']}.{c}" for joint in summary["joints"] for c in WRENCH),
+             *(name + ".force" for name in names), *hand, "power_error"])
+        self.assertEqual(len(table), 1 + summary["poses"])
+        for row in table[1:]:
+            self.assertEqual(len(row), len(table[0]))
+            self.assertTrue(all(math.isfinite(float(value)) for value in row))
+            self.assertLess(abs(float(row[-1])), POWER_TOLERANCE)
+        self.assertNotIn("-0", {value for row in table[1:] for value in row})
+
+    def expect_motion(self, out, mechanism):
+        ground, links = mechanism["ground"], [link["name"] for link in mechanism["links"]]
+        table = read_csv(out / "motion.csv")
+        links.remove(ground)
+        self.assertEqual(table[0], ["t"] + [f"{link}.{c}" for link in links for c in MOTION])
+        for row in table[1:]:
+            values = [float(value) for value in row]
+            for start in range(1, len(values), len(MOTION)):
+                norm = math.hypot(*values[start + 3:start + 7])
+                self.assertLess(abs(norm - 1), UNIT_TOLERANCE)
+
+    def expect_certainty(self, out, summary):
+        rows = read_csv(out / "certainty.csv")
+        self.assertEqual(rows[0], ["joint", "component", "verdict"])
+        self.assertEqual(rows[1:], [[joint["name"], component, verdict]
+                                    for joint in summary["joints"]
+                                    for component, verdict in zip(WRENCH, joint["certainty"])])
+
+    def test_writes_all_outputs_of_every_study(self):
+        for study in studies():
+            with self.subTest(study=study.name):
+                out = self.folder / "out" / study.stem
+                result = self.run_vmech("loads", study.name, "--out", out)
+                self.assertEqual(result.returncode, 0, result.stderr)
+                self.assertEqual({path.name for path in out.iterdir()}, OUTPUTS)
+                summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
+                mechanism = json.loads(self.run_vmech(
+                    "check", summary["mechanism"] + ".yaml", "--json").stdout)
+                self.assertEqual([joint["name"] for joint in summary["joints"]],
+                                 [joint["name"] for joint in mechanism["joints"]])
+                self.expect_loads_header(out, summary)
+                self.expect_motion(out, mechanism)
+                self.expect_certainty(out, summary)
+                self.assertLess(summary["max_power_error"], POWER_TOLERANCE)
+
+    def test_bearing_table_has_a_row_for_every_position(self):
+        self.run_vmech("loads", "slider-crank-study.yaml", "--out", "out")
+        rows = read_csv(self.folder / "out" / "bearings.csv")
+        self.assertEqual([row[0] for row in rows], ["joint", "main", "main", "pin", "wrist"])
+        self.assertEqual([float(row[1]) for row in rows[1:]], [-0.015, 0.015, 0, 0])
+        self.assertEqual({row[3] for row in rows[1:]}, {"yes"})
+        self.assertEqual({len(row) for row in rows}, {len(rows[0])})
+
+    def test_report_is_one_well_formed_page_that_loads_nothing(self):
+        for study in studies():
+            with self.subTest(study=study.name):
+                self.run_vmech("loads", study.name, "--out", "out")
+                page = WellFormed()
+                page.feed((self.folder / "out" / "report.html").read_text(encoding="utf-8"))
+                self.assertEqual((page.faults, page.open), ([], []))
+                self.assertLessEqual({"html", "title", "svg", "table"}, page.seen)
+
+    def test_bytes_do_not_depend_on_the_number_of_threads(self):
+        for study in studies():
+            for threads in ("1", "2"):
+                self.run_vmech("loads", study.name, "--out", "out" + threads, "--threads", threads)
+            for name in OUTPUTS:
+                with self.subTest(study=study.name, name=name):
+                    one, two = (self.folder / ("out" + t) / name for t in ("1", "2"))
+                    self.assertEqual(one.read_bytes(), two.read_bytes())
+
+    def test_out_is_named_after_the_study_where_none_is_given(self):
+        self.run_vmech("loads", "four-bar-study.yaml")
+        self.assertTrue((self.folder / "four-bar-study-loads" / "report.html").exists())
+
+    def test_quiet_prints_nothing(self):
+        result = self.run_vmech("loads", "four-bar-study.yaml", "--quiet")
+        self.assertEqual((result.returncode, result.stdout, result.stderr), (0, "", ""))
+
+    def test_summary_names_open_components_and_hides_rounding(self):
+        result = self.run_vmech("loads", "slider-crank-study.yaml")
+        self.assertRegex(result.stdout, r"(?m)^ *main .*not determined by statics: fz mx my$")
+        self.assertNotRegex(result.stdout.split("written to")[0].split("main ", 2)[2],
+                            r"e-1\d N")
+
+    def test_json_study_gives_the_same_loads_as_yaml(self):
+        (self.folder / "study.json").write_text(json.dumps({
+            "vmech_study": "1.0", "mechanism": "slider-crank.yaml",
+            "units": {"length": "mm", "angle": "deg"},
+            "motion": {"joint": "main", "rpm": 60, "turns": 1, "steps": 36}}), encoding="utf-8")
+        (self.folder / "study.yaml").write_text(
+            'vmech_study: "1.0"\nmechanism: slider-crank.yaml\nunits: {length: mm, angle: deg}\n'
+            "motion: {joint: main, rpm: 60, turns: 1, steps: 36}\n", encoding="utf-8")
+        for kind in ("json", "yaml"):
+            result = self.run_vmech("loads", "study." + kind, "--out", kind)
+            self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual((self.folder / "json" / "loads.csv").read_bytes(),
+                         (self.folder / "yaml" / "loads.csv").read_bytes())
+
+
+class Failure(InFolder):
+    def expect_untouched(self, code, *arguments):
+        before = self.names()
+        result = self.run_vmech(*arguments)
+        self.assertEqual(result.returncode, code, result.stderr)
+        self.assertEqual(result.stdout, "")
+        self.assertEqual(self.names(), before)
+        return result.stderr
+
+    def test_bad_study_leaves_no_folder(self):
+        self.edit("slider-crank-study.yaml", "bad.yaml", ("joint: main", "joint: mian"),
+                  ("rule: stiffness", "rule: guess"))
+        error = self.expect_untouched(2, "loads", "bad.yaml", "--out", "new")
+        self.assertEqual(len(error.splitlines()), 2)
+        for line in error.splitlines():
+            self.assertRegex(line, r"^bad\.yaml:\d+:\d+: ")
+        self.assertIn("did you mean 'main'?", error)
+
+    def test_study_and_its_mechanism_are_reported_together(self):
+        self.edit("slider-crank.yaml", "bad.yaml", ("mass: 0.35", "mass: -0.35"))
+        self.edit("slider-crank-study.yaml", "study.yaml",
+                  ("mechanism: slider-crank.yaml", "mechanism: bad.yaml"),
+                  ("rule: stiffness", "rule: guess"))
+        error = self.expect_untouched(2, "loads", "study.yaml")
+        self.assertRegex(error, r"(?m)^bad\.yaml:\d+:\d+: ")
+        self.assertRegex(error, r"(?m)^study\.yaml:\d+:\d+: ")
+
+    def test_bad_study_does_not_change_an_old_result(self):
+        self.run_vmech("loads", "four-bar-study.yaml", "--out", "out")
+        old = (self.folder / "out" / "loads.csv").read_bytes()
+        self.edit("four-bar-study.yaml", "bad.yaml", ("joint: main", "joint: mian"))
+        self.expect_untouched(2, "loads", "bad.yaml", "--out", "out")
+        self.assertEqual((self.folder / "out" / "loads.csv").read_bytes(), old)
+
+    def test_dead_centre_is_code_3_and_names_the_pose(self):
+        (self.folder / "dead.yaml").write_text(
+            'vmech_study: "1.0"\nmechanism: slider-crank.yaml\nunits: {length: mm, angle: deg}\n'
+            "motion: {joint: guide, speed: 100, duration: 1, steps: 100}\n", encoding="utf-8")
+        error = self.expect_untouched(3, "loads", "dead.yaml", "--out", "new")
+        # The piston starts at 184.8 mm and can reach 200 mm, 15 steps of 1 mm away.
+        self.assertIn("pose 16 (t = 0.16 s)", error)
+        self.assertIn("dead centre", error)
+
+    def test_folder_that_cannot_be_written_is_code_2(self):
+        for out in ("/proc/vmech", self.folder / "crank.yaml", self.folder / "crank.yaml" / "out"):
+            with self.subTest(out=out):
+                error = self.expect_untouched(2, "loads", "four-bar-study.yaml", "--out", out)
+                self.assertIn(str(out), error)
+                self.assertIn("--out", error)
+
+    def test_name_taken_by_a_folder_is_code_2_and_leaves_no_parts(self):
+        (self.folder / "out" / "motion.csv").mkdir(parents=True)
+        error = self.expect_untouched(2, "loads", "four-bar-study.yaml", "--out", "out")
+        self.assertIn("motion.csv", error)
+
+    def test_requirements_nobody_meets_are_code_4_with_results_and_reasons(self):
+        self.edit("slider-crank-study.yaml", "hard.yaml", ("housing: 60", "housing: 30"))
+        result = self.run_vmech("loads", "hard.yaml", "--out", "out")
+        self.assertEqual((result.returncode, result.stderr), (4, ""))
+        self.assertIn("no bearing of the catalogue fits", result.stdout)
+        self.assertEqual({path.name for path in (self.folder / "out").iterdir()}, OUTPUTS)
+        rows = read_csv(self.folder / "out" / "bearings.csv")
+        self.assertEqual([row[3] for row in rows[1:]], ["no", "no", "yes", "yes"])
+
+
+class Progress(InFolder):
+    def long_study(self):
+        return self.edit("stewart-gough-study.yaml", "long.yaml",
+                         ("leg1, table", "leg1, steps: 400000, table"))
+
+    def start(self, *arguments, stderr):
+        process = subprocess.Popen([VMECH, "loads", self.long_study(), "--threads", "1",
+                                    *arguments], cwd=self.folder, stderr=stderr,
+                                   stdout=subprocess.DEVNULL)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        return process
+
+    def read_until(self, descriptor, mark, seconds):
+        text, end = b"", time.monotonic() + seconds
+        while mark not in text and time.monotonic() < end:
+            if select.select([descriptor], [], [], 0.1)[0]:
+                text += os.read(descriptor, 4096)
+        return text.decode()
+
+    def terminal(self):
+        ours, theirs = pty.openpty()
+        self.addCleanup(os.close, ours)
+        self.addCleanup(os.close, theirs)
+        return ours, theirs
+
+    def test_is_shown_on_a_terminal_while_a_long_study_runs(self):
+        ours, theirs = self.terminal()
+        self.start("--out", "out", stderr=theirs)
+        text = self.read_until(ours, b"left", 60)
+        self.assertRegex(text, r"\rloads \[#* *\] +\d+ %  \d+ s left")
+        self.assertFalse((self.folder / "out").exists())
+
+    def test_is_not_shown_if_quiet_or_without_a_terminal(self):
+        ours, theirs = self.terminal()
+        self.start("--quiet", stderr=theirs)
+        self.assertEqual(self.read_until(ours, b"left", 2.5), "")
+        pipe = self.start(stderr=subprocess.PIPE).stderr
+        self.addCleanup(pipe.close)
+        self.assertEqual(self.read_until(pipe.fileno(), b"left", 2.5), "")
+
+
+if __name__ == "__main__":
+    VMECH, EXAMPLES = sys.argv[1], pathlib.Path(sys.argv[2])
+    unittest.main(argv=sys.argv[:1])
