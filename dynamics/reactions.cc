@@ -29,9 +29,12 @@ Wrenchd Moved(const Wrenchd& w, const Vector3d& d) {
   return w.ShiftedBy(d);
 }
 
-/// R diag(d) R'.
+/// R diag(d) R' = d_x 1 + (d_y - d_x) y y' + (d_z - d_x) z z'.
 Matrix3d InWorld(const Matrix3d& R, const Vector3d& d) {
-  return R * d.asDiagonal() * R.transpose();
+  Matrix3d D = ((d.z() - d.x()) * R.col(2)) * R.col(2).transpose();
+  if (d.y() != d.x()) D += ((d.y() - d.x()) * R.col(1)) * R.col(1).transpose();
+  D.diagonal().array() += d.x();
+  return D;
 }
 
 }  // namespace
@@ -207,22 +210,26 @@ void ReactionSolver::Factor(const TreeWorkspace<double>& ws,
 void ReactionSolver::AddBlockToMatrix(const TreeWorkspace<double>& ws, const Block& block) {
   const Loop& loop_k = tree_.loops[block.k];
   const Loop& loop_l = tree_.loops[block.l];
-  const auto T_k = MultiplierBasis(loop_k, ws.loops[block.k]);
-  const auto T_l = MultiplierBasis(loop_l, ws.loops[block.l]);
   const Matrix3d& R_k = ws.loops[block.k].R_WF;
   const Matrix3d& R_l = ws.loops[block.l].R_WF;
+  // T_k' (R_k' A_W R_l) T_l, column by column and then row by row.
   Matrix6d A_F;
   for (int i = 0; i < 6; i += 3) {
     for (int j = 0; j < 6; j += 3) {
       A_F.block<3, 3>(i, j) = R_k.transpose() * block.A_W.block<3, 3>(i, j) * R_l;
     }
   }
-  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> product =
-      T_k.transpose() * A_F * T_l;
+  Matrix6d half;
+  for (int j = 0; j < 6; ++j) {
+    half.row(j) = ProjectOnRows<double>(loop_k, ws.loops[block.k], A_F.col(j).head<3>(),
+                                        A_F.col(j).tail<3>());
+  }
   for (int i = 0; i < loop_k.rows; ++i) {
+    const Vector6d row = ProjectOnRows<double>(loop_l, ws.loops[block.l], half.col(i).head<3>(),
+                                               half.col(i).tail<3>());
     const int columns = block.k == block.l ? i + 1 : loop_l.rows;
     for (int j = 0; j < columns; ++j) {
-      matrix_(row_position_[block.k] + i, row_position_[block.l] + j) += product(i, j);
+      matrix_(row_position_[block.k] + i, row_position_[block.l] + j) += row[j];
     }
   }
 }
@@ -257,10 +264,8 @@ void ReactionSolver::Solve(const TreeWorkspace<double>& ws, const std::vector<Jo
   }
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
     const Wrenchd strain_F = strain_W_[l].In(ws.loops[l].R_WF);
-    const auto T = MultiplierBasis(tree_.loops[l], ws.loops[l]);
-    for (int i = 0; i < tree_.loops[l].rows; ++i) {
-      unknowns_[row_position_[l] + i] = -T.col(i).dot(strain_F.Stacked());
-    }
+    const Vector6d b = ProjectOnRows(tree_.loops[l], ws.loops[l], strain_F.force, strain_F.moment);
+    for (int i = 0; i < tree_.loops[l].rows; ++i) unknowns_[row_position_[l] + i] = -b[i];
   }
   for (size_t u = 0; u < dependent_position_.size(); ++u) {
     unknowns_[dependent_position_[u]] = r[partition_.dependent[u]];

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -24,8 +25,8 @@ class Tracker {
         ws_(tree_),
         dependents_(tree_, model_.partition),
         q_(prepared.q_start),
-        q_before_(q_),
         q_trial_(q_),
+        q_past_{q_, q_, q_},
         step_(VectorXd::Zero(tree_.nv)),
         cut_positions_(tree_.loops.size(), Vector3d::Zero()) {
     for (const JointDrive& drive : study.drives) {
@@ -50,7 +51,7 @@ class Tracker {
       MoveTo(target_, study_.times.front(), 0, 0);
       target_.clear();
     }
-    has_history_ = false;
+    history_ = 0;
   }
 
   void Advance(double time, size_t pose) {
@@ -85,10 +86,11 @@ class Tracker {
     if (depth >= kDeepestHalving) Lost(time, pose);
     std::vector<double> middle(target.size());
     for (size_t k = 0; k < target.size(); ++k) middle[k] = 0.5 * (position_[k] + target[k]);
-    has_history_ = false;
+    history_ = 0;
     MoveTo(middle, time, pose, depth + 1);
-    has_history_ = false;
+    history_ = 0;
     MoveTo(target, time, pose, depth + 1);
+    history_ = 0;
   }
 
   bool TryStep(const std::vector<double>& target) {
@@ -106,10 +108,8 @@ class Tracker {
 
   /// Along the last step if it was as long as this one, else along the tangent. Returns the size.
   double Predict(const std::vector<double>& target) {
-    if (has_history_) {
-      // Same drive step as before: q + (q - q_before), quaternions by renormalising.
-      q_trial_ = 2 * q_ - q_before_;
-      Integrate(tree_, VectorXd::Zero(tree_.nv), &q_trial_);
+    if (history_ > 0) {
+      Extrapolate();
       return (q_trial_ - q_).cwiseAbs().maxCoeff();
     }
     EvaluatePose(tree_, q_, &ws_);
@@ -123,11 +123,31 @@ class Tracker {
     return step_.cwiseAbs().maxCoeff();
   }
 
+  /// The polynomial through the poses so far, taken as equally spaced: after a step or two of
+  /// smooth motion one Newton step is left to do. Where the spacing changes Newton does more.
+  void Extrapolate() {
+    switch (history_) {
+      case 1:
+        q_trial_ = 2 * q_ - q_past_[0];
+        break;
+      case 2:
+        q_trial_ = 3 * q_ - 3 * q_past_[0] + q_past_[1];
+        break;
+      default:
+        q_trial_ = 4 * q_ - 6 * q_past_[0] + 4 * q_past_[1] - q_past_[2];
+        break;
+    }
+    step_.setZero();
+    Integrate(tree_, step_, &q_trial_);  // quaternions back to unit length
+  }
+
   void Accept(const std::vector<double>& target) {
-    q_before_ = q_;
+    q_past_[2].swap(q_past_[1]);
+    q_past_[1].swap(q_past_[0]);
+    q_past_[0].swap(q_);
     q_ = q_trial_;
     position_ = target;
-    has_history_ = true;
+    history_ = std::min(history_ + 1, 3);
     UnwrapCutPositions();
   }
 
@@ -198,13 +218,14 @@ class Tracker {
   double tolerance_;
   TreeWorkspace<double> ws_;
   DependentSolver dependents_;
-  VectorXd q_, q_before_, q_trial_, q_predicted_;
+  VectorXd q_, q_trial_, q_predicted_;
+  VectorXd q_past_[3];  ///< accepted poses before q_, the latest first
   VectorXd step_;
   std::vector<int> coordinate_;   ///< index in q of each drive
   std::vector<double> position_;  ///< of each drive
   std::vector<double> target_;
   std::vector<Vector3d> cut_positions_;
-  bool has_history_ = false;  ///< q_before_ lies one drive step behind q_
+  int history_ = 0;  ///< how many of q_past_ lie one pose behind the other
 };
 
 }  // namespace

@@ -112,7 +112,7 @@ class PenaltyIteration {
            (error_ >= 2 ? options_.penalty : 0);
   }
 
-  VectorXd Bounded(VectorXd dq) const {
+  VectorXd Bounded(const VectorXd& dq) const {
     const double size = std::sqrt(dq.dot(coordinate_weight_.cwiseProduct(dq)));
     const double limit = kLongestStep * std::sqrt(static_cast<double>(tree_.nv));
     return size > limit ? VectorXd(dq * (limit / size)) : dq;

@@ -9,6 +9,8 @@
 namespace vmech {
 namespace {
 
+constexpr double kWellConditioned = 1e-2;  // pivot ratio: at most two digits are lost
+
 /// First dependent slot that shares a loop with each slot: the envelope of C_u' C_u.
 std::vector<int> NormalEnvelope(const KinematicTree& tree, const CoordinatePartition& partition) {
   std::vector<int> first(partition.dependent.size());
@@ -109,8 +111,10 @@ void DependentSolver::StepCoordinates(const TreeWorkspace<double>& ws, VectorXd*
 
 void DependentSolver::Complete(const TreeWorkspace<double>& ws, Target target, double* x) {
   for (int v : partition_.dependent) x[v] = 0;
-  // Twice: the second pass refines what the squared condition of the normal equations costs.
-  for (int pass = 0; pass < 2; ++pass) {
+  // A second pass refines what the squared condition of the normal equations costs near a dead
+  // centre.
+  const int passes = normal_.smallest_pivot() > kWellConditioned ? 1 : 2;
+  for (int pass = 0; pass < passes; ++pass) {
     StartResidual(ws, target);
     SubtractColumns(ws, x);
     SolveInto(ws, x);
@@ -153,8 +157,9 @@ double CloseByNewton(const KinematicTree& tree, double tolerance, int max_steps,
   for (int step = 0; step < max_steps && !(error <= tolerance); ++step) {
     solver->Factor(*ws);
     solver->StepCoordinates(*ws, q);
-    EvaluatePose(tree, *q, ws);
+    EvaluatePose(tree, *q, ws, false);
     error = LargestLoopError(tree, *ws);
+    if (!(error <= tolerance)) LoopJacobian(tree, ws);
   }
   return error;
 }

@@ -60,8 +60,8 @@ void EvaluatePose(const KinematicTree& tree, const VectorXd& q, TreeWorkspace<do
                   bool with_jacobian = true);
 
 /// Newton's iteration on the dependent coordinates, warm-started: q is moved until the largest loop
-/// error is at most `tolerance`, at most `max_steps` times. Leaves ws at the last pose, with
-/// Jacobian. Returns the loop error there. For the whole way from a rough guess see Assemble.
+/// error is at most `tolerance`, at most `max_steps` times. Leaves ws at the last pose.
+/// Returns the loop error there. For the whole way from a rough guess see Assemble.
 double CloseByNewton(const KinematicTree& tree, double tolerance, int max_steps,
                      DependentSolver* solver, TreeWorkspace<double>* ws, VectorXd* q);
 

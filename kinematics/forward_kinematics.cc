@@ -144,43 +144,11 @@ void ForwardAccelerations(const KinematicTree& tree, const T* v, const T* vdot,
   }
 }
 
-template <typename T>
-Pose<T> PoseInWorld(const TreeWorkspace<T>& ws, int node, const Posed& X_BQ) {
-  if (node < 0) return X_BQ.cast<T>();
-  return ws.nodes[node].X_WB * X_BQ.cast<T>();
-}
-
-template <typename T>
-JointAxis<T> AxisInWorld(const KinematicTree& tree, const TreeWorkspace<T>& ws, int index,
-                         int axis) {
-  const TreeNode& node = tree.nodes[index];
-  const Matrix3<T>& R_WB = ws.nodes[index].X_WB.R;
-  const Vector3<T> zero = Vector3<T>::Zero();
-  switch (node.motion) {
-    case NodeMotion::kFixed:
-      return {zero, zero};
-    case NodeMotion::kRevolute:
-      return {R_WB.col(2), zero};
-    case NodeMotion::kPrismatic:
-      return {zero, R_WB.col(2)};
-    case NodeMotion::kScrew:
-      return {R_WB.col(2), node.pitch * R_WB.col(2)};
-    case NodeMotion::kSpherical:
-      break;
-  }
-  if (!node.reversed) return {R_WB.col(axis), zero};
-  const Vector3<T> column = node.X_PF.R.col(axis).cast<T>();
-  if (node.parent < 0) return {-column, zero};
-  return {-(ws.nodes[node.parent].X_WB.R * column), zero};
-}
-
-#define VMECH_INSTANTIATE_FORWARD_KINEMATICS(T)                                          \
-  template void ForwardKinematics<T>(const KinematicTree&, const T*, TreeWorkspace<T>*); \
-  template void ForwardVelocities<T>(const KinematicTree&, const T*, TreeWorkspace<T>*); \
-  template void ForwardAccelerations<T>(const KinematicTree&, const T*, const T*,        \
-                                        TreeWorkspace<T>*);                              \
-  template Pose<T> PoseInWorld<T>(const TreeWorkspace<T>&, int, const Posed&);           \
-  template JointAxis<T> AxisInWorld<T>(const KinematicTree&, const TreeWorkspace<T>&, int, int);
-VMECH_INSTANTIATE_FORWARD_KINEMATICS(double)
+template void ForwardKinematics<double>(const KinematicTree&, const double*,
+                                        TreeWorkspace<double>*);
+template void ForwardVelocities<double>(const KinematicTree&, const double*,
+                                        TreeWorkspace<double>*);
+template void ForwardAccelerations<double>(const KinematicTree&, const double*, const double*,
+                                           TreeWorkspace<double>*);
 
 }  // namespace vmech

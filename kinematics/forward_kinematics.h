@@ -31,6 +31,39 @@ struct JointAxis {
 };
 /// `axis` is 0..2 for a spherical joint and 0 else. Needs X_WB.
 template <typename T>
-JointAxis<T> AxisInWorld(const KinematicTree& tree, const TreeWorkspace<T>& ws, int node, int axis);
+JointAxis<T> AxisInWorld(const KinematicTree& tree, const TreeWorkspace<T>& ws, int node_index,
+                         int axis);
+
+// Small and everywhere: inline.
+
+template <typename T>
+Pose<T> PoseInWorld(const TreeWorkspace<T>& ws, int node, const Posed& X_BQ) {
+  if (node < 0) return X_BQ.cast<T>();
+  return ws.nodes[node].X_WB * X_BQ.cast<T>();
+}
+
+template <typename T>
+JointAxis<T> AxisInWorld(const KinematicTree& tree, const TreeWorkspace<T>& ws, int node_index,
+                         int axis) {
+  const TreeNode& node = tree.nodes[node_index];
+  const Matrix3<T>& R_WB = ws.nodes[node_index].X_WB.R;
+  const Vector3<T> zero = Vector3<T>::Zero();
+  switch (node.motion) {
+    case NodeMotion::kFixed:
+      return {zero, zero};
+    case NodeMotion::kRevolute:
+      return {R_WB.col(2), zero};
+    case NodeMotion::kPrismatic:
+      return {zero, R_WB.col(2)};
+    case NodeMotion::kScrew:
+      return {R_WB.col(2), node.pitch * R_WB.col(2)};
+    case NodeMotion::kSpherical:
+      break;
+  }
+  if (!node.reversed) return {R_WB.col(axis), zero};
+  const Vector3<T> column = node.X_PF.R.col(axis).cast<T>();
+  if (node.parent < 0) return {-column, zero};
+  return {-(ws.nodes[node.parent].X_WB.R * column), zero};
+}
 
 }  // namespace vmech

@@ -39,6 +39,7 @@ std::vector<int> MostIndependentRows(const MatrixXd& A, int count) {
 }
 
 LeftSingularVectors FindLeftSingularVectors(const MatrixXd& A) {
+  if (A.cols() == 0) return {VectorXd(0), MatrixXd::Identity(A.rows(), A.rows())};
   const Eigen::JacobiSVD<MatrixXd> svd(A, Eigen::ComputeFullU);
   return {svd.singularValues(), svd.matrixU()};
 }

@@ -8,37 +8,6 @@
 namespace vmech {
 namespace {
 
-/// Components of [v; w] in axes of F that a joint of the type holds.
-struct RowSelection {
-  int count;
-  int index[6];
-};
-constexpr RowSelection kSelection[] = {
-    {5, {0, 1, 2, 3, 4}},     // revolute
-    {5, {0, 1, 3, 4, 5}},     // prismatic
-    {4, {0, 1, 3, 4}},        // cylindrical
-    {4, {0, 1, 3, 4}},        // screw, and one row of its own
-    {3, {0, 1, 2}},           // universal, and one row of its own
-    {3, {0, 1, 2}},           // spherical
-    {3, {2, 3, 4}},           // planar
-    {6, {0, 1, 2, 3, 4, 5}},  // weld
-};
-
-/// The rows of a relative twist in axes of F.
-template <typename T>
-Vector6<T> ProjectOnRows(const Loop& loop, const Vector3<T>& n_F, const Vector3<T>& linear,
-                         const Vector3<T>& angular) {
-  const RowSelection& selection = kSelection[static_cast<int>(loop.type)];
-  Vector6<T> rows = Vector6<T>::Zero();
-  for (int i = 0; i < selection.count; ++i) {
-    const int k = selection.index[i];
-    rows[i] = k < 3 ? linear[k] : angular[k - 3];
-  }
-  if (loop.type == JointType::kScrew) rows[4] = linear[2] - loop.pitch * angular[2];
-  if (loop.type == JointType::kUniversal) rows[3] = n_F.dot(angular);
-  return rows;
-}
-
 /// The same vector times 2 sin(angle/2)/sin(angle), where cosine = cos(angle).
 template <typename T>
 Vector3<T> ChordFromSine(const Vector3<T>& sine, const T& cosine) {
@@ -113,7 +82,7 @@ void LoopErrors(const KinematicTree& tree, TreeWorkspace<T>* ws) {
     const Vector3<T> y_M = s.R_FM.col(1);
     s.n_F = y_M.cross(Vector3<T>::UnitX());
     // e2 = C dq moves M back to where it belongs in F.
-    s.e2 = -ProjectOnRows<T>(loop, s.n_F, p_FM, ForbiddenRotation<T>(loop.type, s.R_FM));
+    s.e2 = -ProjectOnRows<T>(loop, s, p_FM, ForbiddenRotation<T>(loop.type, s.R_FM));
     if (loop.type == JointType::kUniversal) s.e2[3] = -y_M.x();
     if (loop.type == JointType::kScrew) {
       s.e2[4] = loop.pitch * ScrewTurn<T>(s.R_FM, p_FM.z(), loop.pitch) - p_FM.z();
@@ -130,7 +99,7 @@ void LoopJacobian(const KinematicTree& tree, TreeWorkspace<T>* ws) {
     for (const LoopColumn& c : loop.columns) {
       const JointAxis<T> axis = AxisInWorld(tree, *ws, c.node, c.axis);
       const Vector3<T> linear = axis.linear + axis.angular.cross(s.p_WM - ws->nodes[c.node].X_WB.p);
-      *column++ = ProjectOnRows<T>(loop, s.n_F, c.sign * (s.R_WF.transpose() * linear),
+      *column++ = ProjectOnRows<T>(loop, s, c.sign * (s.R_WF.transpose() * linear),
                                    c.sign * (s.R_WF.transpose() * axis.angular));
     }
   }
@@ -148,40 +117,13 @@ void LoopAccelerationBias(const KinematicTree& tree, TreeWorkspace<T>* ws) {
     const Vector3<T> w_rel = B.w - A.w;
     const Vector3<T> linear = B.a - A.a - 2.0 * A.w.cross(B.v - A.v);
     const Vector3<T> angular = B.alpha - A.alpha - A.w.cross(w_rel);
-    s.bias =
-        ProjectOnRows<T>(loop, s.n_F, s.R_WF.transpose() * linear, s.R_WF.transpose() * angular);
+    s.bias = ProjectOnRows<T>(loop, s, s.R_WF.transpose() * linear, s.R_WF.transpose() * angular);
     if (loop.type == JointType::kUniversal) {
       // n = y_M x x_F turns in F.
       const Vector3<T> w_F = s.R_WF.transpose() * w_rel;
       s.bias[3] += w_F.cross(s.R_FM.col(1)).cross(Vector3<T>::UnitX()).dot(w_F);
     }
   }
-}
-
-template <typename T>
-Wrench<T> WrenchOfMultipliers(const Loop& loop, const LoopState<T>& state, const T* mu) {
-  const RowSelection& selection = kSelection[static_cast<int>(loop.type)];
-  Wrench<T> w;
-  for (int i = 0; i < selection.count; ++i) {
-    const int k = selection.index[i];
-    (k < 3 ? w.force[k] : w.moment[k - 3]) = mu[i];
-  }
-  if (loop.type == JointType::kScrew) {
-    w.force[2] = mu[4];
-    w.moment[2] = -loop.pitch * mu[4];
-  }
-  if (loop.type == JointType::kUniversal) w.moment = state.n_F * mu[3];
-  return w;
-}
-
-Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6> MultiplierBasis(const Loop& loop,
-                                                                  const LoopState<double>& state) {
-  Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6> basis(6, loop.rows);
-  for (int i = 0; i < loop.rows; ++i) {
-    const Vector6d unit = Vector6d::Unit(i);
-    basis.col(i) = WrenchOfMultipliers(loop, state, unit.data()).Stacked();
-  }
-  return basis;
 }
 
 Vector3d CutJointCoordinates(const Loop& loop, const LoopState<double>& state) {
@@ -286,9 +228,17 @@ VectorXd LoopRowScale(const KinematicTree& tree) {
 }
 
 bool IsLengthRow(JointType type, int row) {
-  const RowSelection& selection = kSelection[static_cast<int>(type)];
-  if (row >= selection.count) return type == JointType::kScrew;
-  return selection.index[row] < 3;
+  switch (type) {
+    case JointType::kPrismatic:
+    case JointType::kCylindrical:
+      return row < 2;
+    case JointType::kScrew:
+      return row < 2 || row == 4;
+    case JointType::kPlanar:
+      return row < 1;
+    default:
+      return row < 3;
+  }
 }
 
 bool FacesBackwards(const Loop& loop, const LoopState<double>& state) {
@@ -307,7 +257,5 @@ bool FacesBackwards(const Loop& loop, const LoopState<double>& state) {
 template void LoopErrors<double>(const KinematicTree&, TreeWorkspace<double>*);
 template void LoopJacobian<double>(const KinematicTree&, TreeWorkspace<double>*);
 template void LoopAccelerationBias<double>(const KinematicTree&, TreeWorkspace<double>*);
-template Wrench<double> WrenchOfMultipliers<double>(const Loop&, const LoopState<double>&,
-                                                    const double*);
 
 }  // namespace vmech

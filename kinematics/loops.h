@@ -31,13 +31,16 @@ void LoopJacobian(const KinematicTree& tree, TreeWorkspace<T>* ws);
 template <typename T>
 void LoopAccelerationBias(const KinematicTree& tree, TreeWorkspace<T>* ws);
 
-/// The wrench on the second link about M, in axes of F, of multipliers mu [rows] on the equations.
+/// T' [v; w]: the equations' share of a twist of M in F, in axes of F. What is behind the last of
+/// the loop's rows is zero. The same rows take a wrench on M to what it does to the multipliers.
+template <typename T>
+Vector6<T> ProjectOnRows(const Loop& loop, const LoopState<T>& state, const Vector3<T>& linear,
+                         const Vector3<T>& angular);
+
+/// T mu: the wrench on the second link about M, in axes of F, of multipliers mu [rows] on the
+/// equations.
 template <typename T>
 Wrench<T> WrenchOfMultipliers(const Loop& loop, const LoopState<T>& state, const T* mu);
-
-/// The 6 x rows matrix T of the above, W_M = T mu, [f; m] in axes of F.
-Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6> MultiplierBasis(const Loop& loop,
-                                                                  const LoopState<double>& state);
 
 /// Coordinates of a cut joint that has turned and shifted freely, from the poses of its anchors
 /// [FreedomsOf(type)]; for a spherical joint the rotation vector. Angles within +-pi.
@@ -66,5 +69,66 @@ MatrixXd DenseLoopJacobian(const KinematicTree& tree, const TreeWorkspace<double
 VectorXd StackedLoopErrors(const KinematicTree& tree, const TreeWorkspace<double>& ws);
 /// 1/length for rows that are lengths, 1 for rotations [rows]: makes C dimensionless.
 VectorXd LoopRowScale(const KinematicTree& tree);
+
+// Small and everywhere: inline.
+
+template <typename T>
+Vector6<T> ProjectOnRows(const Loop& loop, const LoopState<T>& state, const Vector3<T>& linear,
+                         const Vector3<T>& angular) {
+  const T zero(0);
+  const Vector3<T>&l = linear, &a = angular;
+  Vector6<T> rows;
+  switch (loop.type) {
+    case JointType::kRevolute:
+      rows << l[0], l[1], l[2], a[0], a[1], zero;
+      break;
+    case JointType::kPrismatic:
+      rows << l[0], l[1], a[0], a[1], a[2], zero;
+      break;
+    case JointType::kCylindrical:
+      rows << l[0], l[1], a[0], a[1], zero, zero;
+      break;
+    case JointType::kScrew:
+      rows << l[0], l[1], a[0], a[1], l[2] - loop.pitch * a[2], zero;
+      break;
+    case JointType::kUniversal:
+      rows << l, state.n_F.dot(a), zero, zero;
+      break;
+    case JointType::kSpherical:
+      rows << l, zero, zero, zero;
+      break;
+    case JointType::kPlanar:
+      rows << l[2], a[0], a[1], zero, zero, zero;
+      break;
+    case JointType::kWeld:
+      rows << l, a;
+      break;
+  }
+  return rows;
+}
+
+template <typename T>
+Wrench<T> WrenchOfMultipliers(const Loop& loop, const LoopState<T>& state, const T* mu) {
+  const T zero(0);
+  switch (loop.type) {
+    case JointType::kRevolute:
+      return {{mu[0], mu[1], mu[2]}, {mu[3], mu[4], zero}};
+    case JointType::kPrismatic:
+      return {{mu[0], mu[1], zero}, {mu[2], mu[3], mu[4]}};
+    case JointType::kCylindrical:
+      return {{mu[0], mu[1], zero}, {mu[2], mu[3], zero}};
+    case JointType::kScrew:
+      return {{mu[0], mu[1], mu[4]}, {mu[2], mu[3], -loop.pitch * mu[4]}};
+    case JointType::kUniversal:
+      return {{mu[0], mu[1], mu[2]}, state.n_F * mu[3]};
+    case JointType::kSpherical:
+      return {{mu[0], mu[1], mu[2]}, {zero, zero, zero}};
+    case JointType::kPlanar:
+      return {{zero, zero, mu[0]}, {mu[1], mu[2], zero}};
+    case JointType::kWeld:
+      return {{mu[0], mu[1], mu[2]}, {mu[3], mu[4], mu[5]}};
+  }
+  return {};
+}
 
 }  // namespace vmech

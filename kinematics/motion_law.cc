@@ -116,7 +116,7 @@ MotionLaw MotionLaw::Uniform(double start, double speed, double acceleration) {
   return law;
 }
 
-MotionLaw MotionLaw::Table(std::vector<double> times, std::vector<double> values) {
+MotionLaw MotionLaw::Table(const std::vector<double>& times, const std::vector<double>& values) {
   RequireTable(times, values.size());
   for (size_t i = 0; i < values.size(); ++i) {
     if (!std::isfinite(values[i])) {
@@ -144,7 +144,7 @@ MotionSample MotionLaw::At(double t) const {
           2 * c[2] + 6 * c[3] * s};
 }
 
-HandLaw HandLaw::Table(std::vector<double> times, const std::vector<Posed>& poses) {
+HandLaw HandLaw::Table(const std::vector<double>& times, const std::vector<Posed>& poses) {
   RequireTable(times, poses.size());
   HandLaw law;
   law.R_W0_ = poses[0].R;

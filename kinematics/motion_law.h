@@ -22,7 +22,7 @@ class MotionLaw {
   static MotionLaw Uniform(double start, double speed, double acceleration = 0);
   /// @throws std::invalid_argument if the lengths differ, the table is empty, a value is not finite
   ///         or the times do not increase; the message names the row (counted from 1).
-  static MotionLaw Table(std::vector<double> times, std::vector<double> values);
+  static MotionLaw Table(const std::vector<double>& times, const std::vector<double>& values);
 
   MotionSample At(double t) const;
 
@@ -48,7 +48,7 @@ class HandLaw {
  public:
   /// @throws std::invalid_argument as MotionLaw::Table, or for an orientation that is pi or more
   ///         away from the first.
-  static HandLaw Table(std::vector<double> times, const std::vector<Posed>& poses);
+  static HandLaw Table(const std::vector<double>& times, const std::vector<Posed>& poses);
 
   HandSample At(double t) const;
 
