@@ -25,6 +25,13 @@ std::string Number(double value, int digits = 4) {
   return plot::FormatSignificant(value, digits);
 }
 
+/// With spaces at which no line breaks.
+std::string Unbroken(const std::string& text) {
+  std::string unbroken;
+  for (char c : text) unbroken += c == ' ' ? std::string("\u00a0") : std::string(1, c);
+  return unbroken;
+}
+
 /// What all parts of the page are made from.
 struct Report {
   const StudyFile& file;
@@ -101,9 +108,10 @@ html::Tile BearingTile(const Report& report, size_t index) {
   const JointBearings& bearings = report.outcome.bearings[index].bearings;
   const std::string& name = report.study.mechanism.joints[static_cast<size_t>(request.joint)].name;
   const std::string remark =
-      bearings.complete() ? fmt::format("life {} of {}", FormatHours(bearings.system_life_hours),
-                                        FormatHours(request.requirements.life_hours))
-                          : std::string("no bearing of the catalogue fits");
+      bearings.complete()
+          ? fmt::format("life {} of {}", Unbroken(FormatHours(bearings.system_life_hours)),
+                        Unbroken(FormatHours(request.requirements.life_hours)))
+          : std::string("no bearing of the catalogue fits");
   return {"Bearings at " + name, ChosenBearings(bearings), "", remark};
 }
 
