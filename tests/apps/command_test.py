@@ -4,15 +4,11 @@ import csv
 import html.parser
 import json
 import math
-import os
 import pathlib
-import pty
-import select
 import shutil
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 
 VMECH = ""
@@ -375,48 +371,6 @@ class Failure(InFolder):
         self.assertEqual({path.name for path in (self.folder / "out").iterdir()}, OUTPUTS)
         rows = read_csv(self.folder / "out" / "bearings.csv")
         self.assertEqual([row[3] for row in rows[1:]], ["no", "no", "yes", "yes"])
-
-
-class Progress(InFolder):
-    def long_study(self):
-        return self.edit("stewart-gough-study.yaml", "long.yaml",
-                         ("leg1, table", "leg1, steps: 400000, table"))
-
-    def start(self, *arguments, stderr):
-        process = subprocess.Popen([VMECH, "loads", self.long_study(), "--threads", "1",
-                                    *arguments], cwd=self.folder, stderr=stderr,
-                                   stdout=subprocess.DEVNULL)
-        self.addCleanup(process.wait)
-        self.addCleanup(process.kill)
-        return process
-
-    def read_until(self, descriptor, mark, seconds):
-        text, end = b"", time.monotonic() + seconds
-        while mark not in text and time.monotonic() < end:
-            if select.select([descriptor], [], [], 0.1)[0]:
-                text += os.read(descriptor, 4096)
-        return text.decode()
-
-    def terminal(self):
-        ours, theirs = pty.openpty()
-        self.addCleanup(os.close, ours)
-        self.addCleanup(os.close, theirs)
-        return ours, theirs
-
-    def test_is_shown_on_a_terminal_while_a_long_study_runs(self):
-        ours, theirs = self.terminal()
-        self.start("--out", "out", stderr=theirs)
-        text = self.read_until(ours, b"left", 60)
-        self.assertRegex(text, r"\rloads \[#* *\] +\d+ %  \d+ s left")
-        self.assertFalse((self.folder / "out").exists())
-
-    def test_is_not_shown_if_quiet_or_without_a_terminal(self):
-        ours, theirs = self.terminal()
-        self.start("--quiet", stderr=theirs)
-        self.assertEqual(self.read_until(ours, b"left", 2.5), "")
-        pipe = self.start(stderr=subprocess.PIPE).stderr
-        self.addCleanup(pipe.close)
-        self.assertEqual(self.read_until(pipe.fileno(), b"left", 2.5), "")
 
 
 if __name__ == "__main__":
