@@ -293,6 +293,19 @@ class Loads(InFolder):
         self.assertNotRegex(result.stdout.split("written to")[0].split("main ", 2)[2],
                             r"e-1\d N")
 
+    def test_warns_of_bearings_that_carry_too_little(self):
+        result = self.run_vmech("loads", "slider-crank-by-hand-study.yaml", "--out", "out")
+        self.assertIn("warning: mean load 2.94 N is below the minimum load", result.stdout)
+        summary = json.loads((self.folder / "out" / "summary.json").read_text(encoding="utf-8"))
+        self.assertIn("minimum load", summary["bearings"][0]["positions"][0]["warnings"][0])
+
+    def test_report_names_the_hardest_of_several_drives(self):
+        self.run_vmech("loads", "stewart-gough-study.yaml", "--out", "out")
+        summary = json.loads((self.folder / "out" / "summary.json").read_text(encoding="utf-8"))
+        hardest = max(summary["drives"], key=lambda drive: drive["peak_force"])
+        page = (self.folder / "out" / "report.html").read_text(encoding="utf-8")
+        self.assertIn(f"at joint {hardest['joint']}, ", page)
+
     def test_json_study_gives_the_same_loads_as_yaml(self):
         (self.folder / "study.json").write_text(json.dumps({
             "vmech_study": "1.0", "mechanism": "slider-crank.yaml",
@@ -374,5 +387,5 @@ class Failure(InFolder):
 
 
 if __name__ == "__main__":
-    VMECH, EXAMPLES = sys.argv[1], pathlib.Path(sys.argv[2])
+    VMECH, EXAMPLES = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
     unittest.main(argv=sys.argv[:1])

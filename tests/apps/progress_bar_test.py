@@ -65,5 +65,5 @@ class Progress(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    VMECH, EXAMPLES = sys.argv[1], pathlib.Path(sys.argv[2])
+    VMECH, EXAMPLES = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
     unittest.main(argv=sys.argv[:1])
