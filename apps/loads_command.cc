@@ -93,9 +93,6 @@ std::string BearingLines(const StudyFile& file, const BearingRequest& request,
   for (size_t k = 0; k < bearings.selections.size(); ++k) {
     text += fmt::format("  at {:>5g} mm  {}\n", 1000 * request.arrangement.positions[k],
                         bearings.selections[k].message);
-    for (const std::string& warning : bearings.selections[k].warnings) {
-      text += fmt::format("               warning: {}\n", warning);
-    }
   }
   if (bearings.complete() && bearings.selections.size() > 1) {
     text += fmt::format("  both         life {}\n", FormatHours(bearings.system_life_hours));
