@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <stdexcept>
 #include <thread>
 
 #include "vmech/apps/commands.h"
@@ -32,6 +33,17 @@ StudyFile ReadOrRedirect(const std::filesystem::path& path) {
     throw FileErrors(path.string(),
                      "is a mechanism; `vmech check` reads it, `vmech loads` takes a study that "
                      "names it (docs/study-format.md)");
+  }
+}
+
+/// RunStudy, whose errors name the study.
+StudyOutcome RunNamed(const StudyFile& file, const LoadStudyOptions& options) {
+  try {
+    return RunStudy(file, options);
+  } catch (const std::invalid_argument& error) {
+    throw FileErrors(file.path.string(), error.what());
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(fmt::format("{}: {}", file.path.string(), error.what()));
   }
 }
 
@@ -93,6 +105,9 @@ std::string BearingLines(const StudyFile& file, const BearingRequest& request,
   for (size_t k = 0; k < bearings.selections.size(); ++k) {
     text += fmt::format("  at {:>5g} mm  {}\n", 1000 * request.arrangement.positions[k],
                         bearings.selections[k].message);
+    for (const std::string& warning : bearings.selections[k].warnings) {
+      text += fmt::format("               warning: {}\n", warning);
+    }
   }
   if (bearings.complete() && bearings.selections.size() > 1) {
     text += fmt::format("  both         life {}\n", FormatHours(bearings.system_life_hours));
@@ -123,7 +138,7 @@ int RunLoads(const LoadsArguments& arguments) {
       bar.Show(done);
       return true;
     };
-    outcome = RunStudy(file, options);
+    outcome = RunNamed(file, options);
   }
   const std::filesystem::path folder_name = arguments.study.stem().string() + "-loads";
   OutputFolder folder(arguments.out.empty() ? folder_name : arguments.out);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <stdexcept>
 
 #include "vmech/apps/commands.h"
@@ -67,7 +68,9 @@ int Run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? vmech::kSuccess : vmech::kBadUsage;
   }
-  return check_command->parsed() ? RunCheck(check) : RunLoads(loads);
+  const int code = check_command->parsed() ? RunCheck(check) : RunLoads(loads);
+  if (std::fflush(stdout) != 0) throw vmech::FileErrors("standard output", "cannot be written");
+  return code;
 }
 
 }  // namespace
@@ -82,7 +85,7 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "vmech: {}\n", error.what());
     return vmech::kBadInput;
   } catch (const std::runtime_error& error) {
-    fmt::print(stderr, "vmech: {}\n", error.what());
+    fmt::print(stderr, "{}\n", error.what());
     return vmech::kNoSolution;
   } catch (const std::exception& error) {
     fmt::print(stderr, "vmech: internal error: {}\n", error.what());

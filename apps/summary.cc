@@ -38,7 +38,7 @@ Json BearingSummary(const StudyFile& file, const BearingOutcome& outcome) {
             {"system_life_hours", Finite(outcome.bearings.system_life_hours)},
             {"positions", Json::array()}};
   for (const BearingSelection& selection : outcome.bearings.selections) {
-    Json position{{"message", selection.message}};
+    Json position{{"message", selection.message}, {"warnings", selection.warnings}};
     if (const Candidate* best = selection.best()) {
       position["designation"] = best->bearing.designation;
       position["fits"] = best->fits();

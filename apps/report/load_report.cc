@@ -25,6 +25,13 @@ std::string Number(double value, int digits = 4) {
   return plot::FormatSignificant(value, digits);
 }
 
+/// With spaces at which no line breaks.
+std::string Unbroken(const std::string& text) {
+  std::string unbroken;
+  for (char c : text) unbroken += c == ' ' ? std::string("\u00a0") : std::string(1, c);
+  return unbroken;
+}
+
 /// What all parts of the page are made from.
 struct Report {
   const StudyFile& file;
@@ -69,6 +76,26 @@ html::Tile LargestForceTile(const Report& report, const Cycle& cycle) {
   return {"Largest joint force", Number(largest), "N", remark};
 }
 
+double PeakDriveForce(const LoadStudyResult& result, size_t drive) {
+  double peak = 0;
+  for (const PoseLoads& pose : result.poses) {
+    peak = std::max(peak, std::abs(pose.drive_forces[drive]));
+  }
+  return peak;
+}
+
+/// Of the drives that exert what the first one does, force or torque, the one that exerts most.
+size_t HardestDrive(const Report& report) {
+  size_t hardest = 0;
+  for (size_t k = 1; k < report.study.drives.size(); ++k) {
+    if (DriveTurns(report.study, k) == DriveTurns(report.study, 0) &&
+        PeakDriveForce(report.result, k) > PeakDriveForce(report.result, hardest)) {
+      hardest = k;
+    }
+  }
+  return hardest;
+}
+
 html::Tile DriveTile(const Report& report, const Cycle& cycle, size_t drive) {
   double peak = 0, sum = 0;
   size_t at = 0;
@@ -78,12 +105,17 @@ html::Tile DriveTile(const Report& report, const Cycle& cycle, size_t drive) {
     sum += force;
     if (std::abs(force) > std::abs(peak)) peak = force, at = i;
   }
+  const size_t joint = static_cast<size_t>(report.study.drives[drive].joint);
+  const std::string where =
+      report.study.drives.size() > 1
+          ? fmt::format("joint {}, ", report.study.mechanism.joints[joint].name)
+          : "";
   const bool turns = DriveTurns(report.study, drive);
   const std::string_view unit = turns ? "N m" : "N";
   const double mean = sum / static_cast<double>(poses.size());
   const std::string shown = std::abs(mean) < kRounding * std::abs(peak) ? "0" : Number(mean, 3);
   return {turns ? "Peak drive torque" : "Peak drive force", Number(peak), unit,
-          fmt::format("at {}; mean {} {}", cycle.At(at), shown, unit)};
+          fmt::format("at {}{}; mean {} {}", where, cycle.At(at), shown, unit)};
 }
 
 html::Tile HandTile(const Report& report, const Cycle& cycle) {
@@ -101,16 +133,17 @@ html::Tile BearingTile(const Report& report, size_t index) {
   const JointBearings& bearings = report.outcome.bearings[index].bearings;
   const std::string& name = report.study.mechanism.joints[static_cast<size_t>(request.joint)].name;
   const std::string remark =
-      bearings.complete() ? fmt::format("life {} of {}", FormatHours(bearings.system_life_hours),
-                                        FormatHours(request.requirements.life_hours))
-                          : std::string("no bearing of the catalogue fits");
+      bearings.complete()
+          ? fmt::format("life {} of {}", Unbroken(FormatHours(bearings.system_life_hours)),
+                        Unbroken(FormatHours(request.requirements.life_hours)))
+          : std::string("no bearing of the catalogue fits");
   return {"Bearings at " + name, ChosenBearings(bearings), "", remark};
 }
 
 Markup Headline(const Report& report, const Cycle& cycle) {
   std::vector<html::Tile> tiles = {LargestForceTile(report, cycle)};
-  for (size_t i = 0; i < report.study.drives.size() && i < 1; ++i) {
-    tiles.push_back(DriveTile(report, cycle, i));
+  if (!report.study.drives.empty()) {
+    tiles.push_back(DriveTile(report, cycle, HardestDrive(report)));
   }
   if (report.study.hand) tiles.push_back(HandTile(report, cycle));
   for (size_t i = 0; i < report.file.bearings.size(); ++i) {

@@ -4,15 +4,11 @@ import csv
 import html.parser
 import json
 import math
-import os
 import pathlib
-import pty
-import select
 import shutil
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 
 VMECH = ""
@@ -82,18 +78,13 @@ class Help(unittest.TestCase):
         for word in ("check", "loads", "Exit codes", *(f"{code} " for code in range(6))):
             self.assertIn(word, result.stdout)
 
-    def test_of_check_names_arguments_options_and_exit_codes(self):
-        result = vmech("check", "--help")
-        self.assertEqual(result.returncode, 0)
-        for word in ("vmech check", "MECHANISM", "--json", "YAML or JSON", "Exit codes"):
-            self.assertIn(word, result.stdout)
-
-    def test_of_loads_names_arguments_options_and_outputs(self):
-        result = vmech("loads", "--help")
-        self.assertEqual(result.returncode, 0)
-        for word in ("vmech loads", "STUDY", "--out", "--threads", "--quiet", "Exit codes",
-                     *OUTPUTS):
-            self.assertIn(word, result.stdout)
+    def test_of_subcommands_names_arguments_options_outputs_and_exit_codes(self):
+        for name, words in (("check", ("MECHANISM", "--json")),
+                            ("loads", ("STUDY", "--out", "--threads", "--quiet", *OUTPUTS))):
+            result = vmech(name, "--help")
+            self.assertEqual(result.returncode, 0)
+            for word in ("Usage: vmech " + name, "YAML or JSON", "Exit codes", *words):
+                self.assertIn(word, result.stdout)
 
     def test_version_is_name_and_number(self):
         self.assertRegex(vmech("--version").stdout, r"^vmech \d+\.\d+\.\d+\n$")
@@ -297,6 +288,19 @@ class Loads(InFolder):
         self.assertNotRegex(result.stdout.split("written to")[0].split("main ", 2)[2],
                             r"e-1\d N")
 
+    def test_warns_of_bearings_that_carry_too_little(self):
+        result = self.run_vmech("loads", "slider-crank-by-hand-study.yaml", "--out", "out")
+        self.assertIn("warning: mean load 2.94 N is below the minimum load", result.stdout)
+        summary = json.loads((self.folder / "out" / "summary.json").read_text(encoding="utf-8"))
+        self.assertIn("minimum load", summary["bearings"][0]["positions"][0]["warnings"][0])
+
+    def test_report_names_the_hardest_of_several_drives(self):
+        self.run_vmech("loads", "stewart-gough-study.yaml", "--out", "out")
+        summary = json.loads((self.folder / "out" / "summary.json").read_text(encoding="utf-8"))
+        hardest = max(summary["drives"], key=lambda drive: drive["peak_force"])
+        page = (self.folder / "out" / "report.html").read_text(encoding="utf-8")
+        self.assertIn(f"at joint {hardest['joint']}, ", page)
+
     def test_json_study_gives_the_same_loads_as_yaml(self):
         (self.folder / "study.json").write_text(json.dumps({
             "vmech_study": "1.0", "mechanism": "slider-crank.yaml",
@@ -352,8 +356,22 @@ class Failure(InFolder):
             "motion: {joint: guide, speed: 100, duration: 1, steps: 100}\n", encoding="utf-8")
         error = self.expect_untouched(3, "loads", "dead.yaml", "--out", "new")
         # The piston starts at 184.8 mm and can reach 200 mm, 15 steps of 1 mm away.
-        self.assertIn("pose 16 (t = 0.16 s)", error)
+        self.assertIn("dead.yaml: the motion cannot be followed to pose 16 (t = 0.16 s)", error)
         self.assertIn("dead centre", error)
+
+    def test_drives_that_contradict_each_other_are_code_2_and_name_the_study(self):
+        self.edit("slider-crank-study.yaml", "two.yaml",
+                  ("steps: 720}", "steps: 720}, {joint: pin, rpm: 60}]"),
+                  ("motion: {", "motion: [{"))
+        error = self.expect_untouched(2, "loads", "two.yaml")
+        self.assertRegex(error, r"^two\.yaml: the drives at 'main', 'pin' cannot all move")
+
+    def test_output_that_cannot_be_written_is_code_2(self):
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            result = subprocess.run([VMECH, "check", self.folder / "crank.yaml"], stdout=full,
+                                    stderr=subprocess.PIPE, text=True, check=False)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("standard output: cannot be written", result.stderr)
 
     def test_folder_that_cannot_be_written_is_code_2(self):
         for out in ("/proc/vmech", self.folder / "crank.yaml", self.folder / "crank.yaml" / "out"):
@@ -377,48 +395,6 @@ class Failure(InFolder):
         self.assertEqual([row[3] for row in rows[1:]], ["no", "no", "yes", "yes"])
 
 
-class Progress(InFolder):
-    def long_study(self):
-        return self.edit("stewart-gough-study.yaml", "long.yaml",
-                         ("leg1, table", "leg1, steps: 400000, table"))
-
-    def start(self, *arguments, stderr):
-        process = subprocess.Popen([VMECH, "loads", self.long_study(), "--threads", "1",
-                                    *arguments], cwd=self.folder, stderr=stderr,
-                                   stdout=subprocess.DEVNULL)
-        self.addCleanup(process.wait)
-        self.addCleanup(process.kill)
-        return process
-
-    def read_until(self, descriptor, mark, seconds):
-        text, end = b"", time.monotonic() + seconds
-        while mark not in text and time.monotonic() < end:
-            if select.select([descriptor], [], [], 0.1)[0]:
-                text += os.read(descriptor, 4096)
-        return text.decode()
-
-    def terminal(self):
-        ours, theirs = pty.openpty()
-        self.addCleanup(os.close, ours)
-        self.addCleanup(os.close, theirs)
-        return ours, theirs
-
-    def test_is_shown_on_a_terminal_while_a_long_study_runs(self):
-        ours, theirs = self.terminal()
-        self.start("--out", "out", stderr=theirs)
-        text = self.read_until(ours, b"left", 60)
-        self.assertRegex(text, r"\rloads \[#* *\] +\d+ %  \d+ s left")
-        self.assertFalse((self.folder / "out").exists())
-
-    def test_is_not_shown_if_quiet_or_without_a_terminal(self):
-        ours, theirs = self.terminal()
-        self.start("--quiet", stderr=theirs)
-        self.assertEqual(self.read_until(ours, b"left", 2.5), "")
-        pipe = self.start(stderr=subprocess.PIPE).stderr
-        self.addCleanup(pipe.close)
-        self.assertEqual(self.read_until(pipe.fileno(), b"left", 2.5), "")
-
-
 if __name__ == "__main__":
-    VMECH, EXAMPLES = sys.argv[1], pathlib.Path(sys.argv[2])
+    VMECH, EXAMPLES = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
     unittest.main(argv=sys.argv[:1])
