@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <Eigen/SVD>
+#include <algorithm>
 #include <cmath>
 
 namespace vmech {
@@ -19,7 +20,9 @@ NullSpace FindNullSpace(const MatrixXd& A, double tolerance) {
   const Eigen::Index n = A.cols();
   if (A.rows() == 0 || n == 0) return {0, MatrixXd::Identity(n, n), 0};
   Eigen::ColPivHouseholderQR<MatrixXd> qr(A.transpose());
-  qr.setThreshold(tolerance);
+  // Eigen's threshold is relative to the largest pivot; where that is rounding, nothing counts.
+  if (qr.maxPivot() <= tolerance) return {0, MatrixXd::Identity(n, n), 0};
+  qr.setThreshold(tolerance / std::min(1.0, qr.maxPivot()));
   NullSpace space;
   space.rank = static_cast<int>(qr.rank());
   const MatrixXd Q = qr.householderQ() * MatrixXd::Identity(n, n);

@@ -22,7 +22,8 @@ struct NullSpace {
   double smallest_kept = 0;  ///< last pivot that counted, relative to the largest
 };
 
-/// Pivots below `tolerance` times the largest count as zero.
+/// For matrices whose entries are of the order of 1: pivots below `tolerance`, or `tolerance` times
+/// the largest, count as zero. A matrix of nothing but rounding has rank 0.
 NullSpace FindNullSpace(const MatrixXd& A, double tolerance);
 
 /// The first `count` rows of A that column pivoting of A' chooses: the best-conditioned ones.

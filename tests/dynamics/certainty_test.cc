@@ -131,6 +131,20 @@ TEST(Certainty, OfADoorOnTwoHingesIsAboutTheirAxisOnly) {
   ExpectLetters("door-on-two-hinges", {{"lower", "nnnnnc"}, {"upper", "nnnnnc"}});
 }
 
+// The same door, its axis out of every plane of the drawing: rounding makes the hinges' axes two,
+// by 1e-17 or so, and must not make a rigid structure of the door.
+TEST(Certainty, OfADoorDoesNotDependOnRoundingInItsAxis) {
+  LoadStudy study = StudyOf("door-on-two-hinges");
+  const Matrix3d R = AxesFromZX(Vector3d(0.3, -0.5, 0.7), Vector3d(1, 2, 3));
+  for (Anchor& anchor : study.mechanism.links[study.mechanism.ground].anchors) {
+    anchor.X_LA = Posed{R, Vector3d(0.1, 0.2, -0.3)} * anchor.X_LA;
+  }
+  const LoadStudyResult result = RunLoadStudy(study);
+  EXPECT_EQ(result.mobility, 1);
+  EXPECT_EQ(result.redundant_equations, 5);
+  EXPECT_EQ(Letters(result.certainty[0]), "nnnnnc");
+}
+
 // Three upward forces for force and moment; the rollers pass no force along the track and their
 // pins no moment about z. Out of the plane every support holds all that it can. The tracks' axes
 // are z along the beam, x up and y out of the plane.

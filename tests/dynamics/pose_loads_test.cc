@@ -1,0 +1,62 @@
+#include "vmech/dynamics/pose_loads.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstddef>
+
+#include "driven_examples.h"
+#include "vmech/dynamics/load_model.h"
+
+// Counts every allocation of this program, Eigen's own included. The sanitizers bring an allocator
+// of theirs.
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+static std::atomic<long> allocations{0};
+extern "C" {
+void* __libc_malloc(std::size_t size);  // NOLINT: glibc's name
+void* malloc(std::size_t size) {
+  ++allocations;
+  return __libc_malloc(size);
+}
+}
+
+namespace vmech {
+namespace {
+
+class EveryPose : public testing::TestWithParam<DrivenExample> {};
+
+TEST_P(EveryPose, IsEvaluatedWithoutAllocation) {
+  const LoadStudy study = StudyOf(GetParam().name);
+  const PreparedStudy prepared = PrepareStudy(study);
+  const std::vector<PoseInput> inputs = TrackMotion(study, prepared, 1e-13);
+  LoadWorkspace ws(prepared.model);
+  PoseLoads pose;
+  SizePoseLoads(prepared.model, &pose);
+  ASSERT_TRUE(EvaluatePoseLoads(prepared.model, inputs[0], &ws, &pose));
+  const long before = allocations;
+  for (const PoseInput& input : inputs) {
+    ASSERT_TRUE(EvaluatePoseLoads(prepared.model, input, &ws, &pose));
+    EvaluateLinkMotions(prepared.model, ws, &pose);
+  }
+  EXPECT_EQ(allocations - before, 0);
+}
+
+/// The acceleration of idle freedoms comes from small dense systems, which do allocate.
+std::vector<DrivenExample> ExamplesWithoutIdleFreedoms() {
+  std::vector<DrivenExample> examples = DrivenExamples();
+  std::erase_if(examples, [](const DrivenExample& e) { return std::string(e.name) == "rssr"; });
+  return examples;
+}
+
+INSTANTIATE_TEST_SUITE_P(Examples, EveryPose, testing::ValuesIn(ExamplesWithoutIdleFreedoms()),
+                         [](const auto& info) { return TestName(info.param.name); });
+
+TEST(Allocations, AreCounted) {
+  const long before = allocations;
+  const VectorXd x = VectorXd::Zero(100);
+  EXPECT_GT(allocations - before, 0) << x.size();
+}
+
+}  // namespace
+}  // namespace vmech
+#endif
