@@ -266,6 +266,11 @@ bool IsRotation(JointType type, int freedom) {
 void ReadMotion(const Node& node, const Units& units, const std::filesystem::path& folder,
                 LoadStudy* study) {
   if (!node) return;
+  if (node.kind() == Node::Kind::kScalar) {
+    node.Word<bool>({{kStill, true}}, true);
+    study->times = {0};
+    return;
+  }
   if (node.kind() == Node::Kind::kMap && node["grasp"]) {
     ReadHandDrive(node, units, folder, study);
     return;
@@ -279,6 +284,7 @@ void ReadMotion(const Node& node, const Units& units, const std::filesystem::pat
 }
 
 std::string MotionInWords(const Node& node) {
+  if (node.kind() == Node::Kind::kScalar) return "at rest";
   std::vector<Node> drives{node};
   if (node.kind() == Node::Kind::kList) drives = node.List();
   std::string words;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 
 #include "vmech/apps/csv_table.h"
 #include "vmech/dynamics/load_study.h"
@@ -36,6 +37,9 @@ int FindPart(const Node& node, std::string_view kind, const std::vector<Part>& p
 
 /// True if a freedom of a joint is a rotation.
 bool IsRotation(JointType type, int freedom);
+
+/// The value of `motion` for a structure that cannot move: one pose, no drive.
+constexpr std::string_view kStill = "still";
 
 /// Reads the block `motion` into the drives, or the hand, and the times of a study.
 void ReadMotion(const Node& node, const Units& units, const std::filesystem::path& folder,

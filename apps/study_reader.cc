@@ -60,7 +60,7 @@ std::optional<double> ReadArgument(const Node& node, const CsvTable& table, cons
   std::string argument = "t";
   std::string known = "'t'";
   double unit = units.time;
-  if (study.drives.empty() && !study.hand) return {};  // the motion is wrong, as reported there
+  if (study.times.empty()) return {};  // the motion is wrong, as reported there
   load->over = ExternalLoad::Over::kTime;
   if (!study.drives.empty()) {
     const JointDrive& drive = study.drives[0];

@@ -16,9 +16,9 @@ namespace vmech {
 namespace {
 
 void RequireDrive(const LoadStudy& study) {
-  if (study.drives.empty() == !study.hand) {
+  if (!study.drives.empty() && study.hand) {
     throw std::invalid_argument(
-        "a study needs either joint drives or a hand; give `motion` a joint or a grasp");
+        "a study has joint drives or a hand, not both; give `motion` joints or a grasp");
   }
   if (study.times.empty()) throw std::invalid_argument("the study has no poses; give `steps`");
   for (const JointDrive& drive : study.drives) {

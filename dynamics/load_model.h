@@ -18,7 +18,7 @@ struct PreparedStudy {
   std::vector<std::string> warnings;
 };
 
-/// @throws std::invalid_argument if the study contradicts itself (no drive, drive and hand, a joint
+/// @throws std::invalid_argument if the study contradicts itself (drive and hand, a joint
 ///         without that freedom, drives that cannot all move, freedoms that nothing prescribes and
 ///         that the loads depend on), std::runtime_error if the loops cannot be closed.
 PreparedStudy PrepareStudy(const LoadStudy& study);

@@ -48,7 +48,7 @@ struct ExternalLoad {
 /// What is to be computed: a mechanism, its motion, and what acts on it.
 struct LoadStudy {
   Mechanism mechanism;
-  std::vector<JointDrive> drives;  ///< empty if the hand drives
+  std::vector<JointDrive> drives;  ///< empty if the hand drives, or for a structure at rest
   std::optional<HandDrive> hand;
   std::vector<double> times;  ///< of the poses, increasing [s]
   /// Length of the cycle [s] if the motion repeats after it; 0 if it is one passage.

@@ -201,7 +201,6 @@ LoadWorkspace::LoadWorkspace(const LoadModel& model)
       joints(model.tree.mechanism.joints.size()),
       applied(model.tree.nodes.size()),
       cut_passive(model.tree.loops.size()),
-      cut_rates(model.tree.loops.size(), Vector3d::Zero()),
       v(VectorXd::Zero(model.tree.nv)),
       vdot(VectorXd::Zero(model.tree.nv)),
       tau(VectorXd::Zero(model.tree.nv)),

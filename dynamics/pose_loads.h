@@ -43,7 +43,6 @@ struct LoadWorkspace {
   std::vector<JointState> joints;
   std::vector<Wrenchd> applied;      ///< per node about Bo, from outside
   std::vector<Wrenchd> cut_passive;  ///< per loop: springs and friction of the cut joint, in F
-  std::vector<Vector3d> cut_rates;   ///< per loop
   VectorXd v, vdot;
   VectorXd tau;      ///< needed along each freedom
   VectorXd passive;  ///< supplied by springs and friction

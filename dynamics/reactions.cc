@@ -24,17 +24,19 @@ constexpr Freedoms kFree[] = {
     {{false, false, false}, {false, false, false}},  // weld
 };
 
-/// The wrench about P that a wrench w about Q = P + d is.
-Wrenchd Moved(const Wrenchd& w, const Vector3d& d) {
-  return w.ShiftedBy(d);
-}
-
 /// R diag(d) R' = d_x 1 + (d_y - d_x) y y' + (d_z - d_x) z z'.
 Matrix3d InWorld(const Matrix3d& R, const Vector3d& d) {
   Matrix3d D = ((d.z() - d.x()) * R.col(2)) * R.col(2).transpose();
   if (d.y() != d.x()) D += ((d.y() - d.x()) * R.col(1)) * R.col(1).transpose();
   D.diagonal().array() += d.x();
   return D;
+}
+
+/// S(d) A: the columns of A crossed by d.
+Matrix3d CrossColumns(const Vector3d& d, const Matrix3d& A) {
+  Matrix3d crossed;
+  for (int k = 0; k < 3; ++k) crossed.col(k) = d.cross(A.col(k));
+  return crossed;
 }
 
 }  // namespace
@@ -78,7 +80,7 @@ void TreeJointWrenches(const KinematicTree& tree, const TreeWorkspace<double>& w
     if (index < 0) continue;
     JointState& joint = (*joints)[j];
     const NodeState<double>& node = ws.nodes[index];
-    const Wrenchd W = Moved(node.F_Bo, node.X_WB.p - joint.p_WM);
+    const Wrenchd W = node.F_Bo.ShiftedBy(node.X_WB.p - joint.p_WM);
     joint.W_M = tree.nodes[index].reversed ? -W : W;
   }
 }
@@ -91,7 +93,7 @@ void AddMultiplierWrenches(const KinematicTree& tree, const double* mu, TreeWork
     const Wrenchd W{s.R_WF * W_F.force, s.R_WF * W_F.moment};
     for (const LoopNode& n : loop.path) {
       NodeState<double>& node = ws->nodes[n.node];
-      const Wrenchd share = Moved(W, s.p_WM - node.X_WB.p);
+      const Wrenchd share = W.ShiftedBy(s.p_WM - node.X_WB.p);
       node.F_Bo.force -= n.sign * share.force;
       node.F_Bo.moment -= n.sign * share.moment;
     }
@@ -186,20 +188,20 @@ void ReactionSolver::Factor(const TreeWorkspace<double>& ws,
   }
   for (Block& block : blocks_) block.A_W.setZero();
   for (const Contribution& c : contributions_) {
-    // W_j = sign (f, m + d x f) for a wrench (f, m) at the cut, d from M of joint j to the cut.
+    // W_j = sign (f, m + d x f) for a wrench (f, m) at the cut, d from M of joint j to the cut:
+    //   A_ff = D_f - S_k D_m S_l,  A_fm = -S_k D_m,  A_mf = D_m S_l,  A_mm = D_m,  S = S(d).
     const Load& k = loads_[c.joint][c.load_k];
     const Load& l = loads_[c.joint][c.load_l];
     const double sign = k.sign * l.sign;
     const Vector3d d_k = ws.loops[k.loop].p_WM - joints[c.joint].p_WM;
     const Vector3d d_l = ws.loops[l.loop].p_WM - joints[c.joint].p_WM;
-    const Matrix3d& Dm = soft_moment_W_[c.joint];
-    const Matrix3d DmSl = Dm * CrossMatrix(d_l);
-    const Matrix3d Sk = CrossMatrix(d_k);
+    const Matrix3d& D_m = soft_moment_W_[c.joint];
+    const Matrix3d D_m_S_l = -CrossColumns(d_l, D_m).transpose();
     Matrix6d& A = blocks_[c.block].A_W;
-    A.topLeftCorner<3, 3>() += sign * (soft_force_W_[c.joint] - Sk * DmSl);
-    A.topRightCorner<3, 3>() -= sign * (Sk * Dm);
-    A.bottomLeftCorner<3, 3>() += sign * DmSl;
-    A.bottomRightCorner<3, 3>() += sign * Dm;
+    A.topLeftCorner<3, 3>() += sign * (soft_force_W_[c.joint] - CrossColumns(d_k, D_m_S_l));
+    A.topRightCorner<3, 3>() -= sign * CrossColumns(d_k, D_m);
+    A.bottomLeftCorner<3, 3>() += sign * D_m_S_l;
+    A.bottomRightCorner<3, 3>() += sign * D_m;
   }
   matrix_.SetZero();
   for (const Block& block : blocks_) AddBlockToMatrix(ws, block);
