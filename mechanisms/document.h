@@ -123,7 +123,7 @@ class Node {
   friend class Document;
   Node(Document* document, int index) : document_(document), index_(index) {}
   int WordIndex(std::span<const std::string> words) const;
-  bool Expect(Kind kind, std::string_view what) const;
+  bool Expect(Kind expected, std::string_view what) const;
 
   Document* document_ = nullptr;
   int index_ = -1;

@@ -68,7 +68,7 @@ JointDrive DriveAt(const Mechanism& mechanism, const std::string& joint, double 
 TEST(RefusedStudy, SaysThatItHasNoDrive) {
   LoadStudy study = StudyOf("slider-crank");
   study.drives.clear();
-  EXPECT_THAT(Refusal(study), HasSubstr("needs either joint drives or a hand"));
+  EXPECT_THAT(Refusal(study), HasSubstr("nothing prescribes the freedom"));
 }
 
 TEST(RefusedStudy, SaysThatItHasNoPoses) {
