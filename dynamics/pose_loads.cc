@@ -18,6 +18,9 @@ namespace vmech {
 namespace {
 
 constexpr int kMaxFrictionIterations = 200;
+/// Small enough to stay with the equilibrium that grows out of the one without friction: beyond the
+/// cone of friction there is a second, in which the loads have turned round.
+constexpr double kFirstRelaxation = 0.25;
 constexpr double kFrictionTolerance = 1e-13;  // change of the largest joint force, relative
 
 void CloseVelocities(const LoadModel& model, const PoseInput& input, LoadWorkspace* ws) {
@@ -143,8 +146,8 @@ void SolveReactions(const LoadModel& model, LoadWorkspace* ws) {
   }
 }
 
-/// One pass from friction to joint wrenches. Returns the largest change of a joint force.
-double EquilibriumPass(const LoadModel& model, LoadWorkspace* ws, PoseLoads* out) {
+/// One pass from the friction under the joint wrenches of `out` to new joint wrenches there.
+void EquilibriumPass(const LoadModel& model, LoadWorkspace* ws, PoseLoads* out) {
   if (model.has_passive) PassiveForces(model, *out, ws);
   GatherApplied(model, ws);
   RecursiveNewtonEuler<double>(model.tree, model.tree.mechanism.gravity_W, ws->applied.data(),
@@ -157,29 +160,39 @@ double EquilibriumPass(const LoadModel& model, LoadWorkspace* ws, PoseLoads* out
     if (model.hand) ApplyHandWrench(model, ws, out);
     SolveReactions(model, ws);
   }
-  double change = 0;
   for (size_t j = 0; j < ws->joints.size(); ++j) {
-    const Wrenchd W_F = ws->joints[j].W_M.In(ws->joints[j].R_WF);
-    change = std::max(change, (W_F.force - out->joints[j].force).cwiseAbs().maxCoeff());
-    out->joints[j] = W_F;
+    out->joints[j] = ws->joints[j].W_M.In(ws->joints[j].R_WF);
   }
-  return change;
 }
 
-/// Reactions and the friction that depends on them, by fixed-point iteration.
+/// Reactions and the friction that depends on them: x = G(x) for the joint forces x, by fixed-point
+/// iteration with Aitken's relaxation, x += beta r, r = G(x) - x, which converges where the plain
+/// iteration swings or creeps. Without a solution the mechanism locks itself.
 void FindEquilibrium(const LoadModel& model, LoadWorkspace* ws, PoseLoads* out) {
   for (Wrenchd& w : out->joints) w = {};
   out->jammed = false;
-  double change = EquilibriumPass(model, ws, out);
+  EquilibriumPass(model, ws, out);
   if (!model.has_load_friction) return;
-  auto largest = [&] {
-    double force = 0;
-    for (const Wrenchd& w : out->joints) force = std::max(force, w.force.cwiseAbs().maxCoeff());
-    return force;
-  };
+  double beta = kFirstRelaxation;
+  for (size_t j = 0; j < out->joints.size(); ++j) ws->friction_load[j] = out->joints[j].force;
   for (int i = 0; i < kMaxFrictionIterations; ++i) {
-    change = EquilibriumPass(model, ws, out);
-    if (change <= kFrictionTolerance * largest()) return;
+    EquilibriumPass(model, ws, out);
+    double change = 0, largest = 0, along = 0, across = 0;
+    for (size_t j = 0; j < out->joints.size(); ++j) {
+      const Vector3d r = out->joints[j].force - ws->friction_load[j];
+      const Vector3d dr = r - ws->friction_residual[j];
+      change = std::max(change, r.cwiseAbs().maxCoeff());
+      largest = std::max(largest, out->joints[j].force.cwiseAbs().maxCoeff());
+      along += ws->friction_residual[j].dot(dr);
+      across += dr.squaredNorm();
+      ws->friction_residual[j] = r;
+    }
+    if (change <= kFrictionTolerance * largest) return;
+    if (i > 0 && across > 0) beta *= -along / across;
+    for (size_t j = 0; j < out->joints.size(); ++j) {
+      ws->friction_load[j] += beta * ws->friction_residual[j];
+      out->joints[j].force = ws->friction_load[j];
+    }
   }
   out->jammed = true;
 }
@@ -207,6 +220,8 @@ LoadWorkspace::LoadWorkspace(const LoadModel& model)
       passive(VectorXd::Zero(model.tree.nv)),
       open(VectorXd::Zero(model.tree.nv)),
       mu(VectorXd::Zero(model.tree.rows)),
+      friction_load(joints.size(), Vector3d::Zero()),
+      friction_residual(joints.size(), Vector3d::Zero()),
       external_W(model.external.size()) {
   const CoordinatePartition& p = model.partition;
   if (model.hand || !p.idle.empty()) {

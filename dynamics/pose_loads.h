@@ -49,6 +49,7 @@ struct LoadWorkspace {
   VectorXd open;     ///< what is left for drives and multipliers
   VectorXd mu;       ///< multipliers of the cut joints
   MatrixXd motions;  ///< [nv, independent]: free motions, where the hand or idle freedoms need them
+  std::vector<Vector3d> friction_load, friction_residual;  ///< per joint, of the friction iteration
   std::vector<Wrenchd> external_W;  ///< the external loads at this pose about their points, world
 };
 

@@ -99,18 +99,22 @@ TEST_F(WeightlessSliderCrank, DrivesItsLoadAgainstFrictionThatTheLoadCauses) {
   EXPECT_FALSE(pose.jammed);
 }
 
+// Giving way has an equilibrium whatever the friction, also beyond the cone that locks the other
+// way.
 TEST_F(WeightlessSliderCrank, IsHelpedByFrictionAsItGivesWay) {
-  constexpr double kMu = 0.3;
-  const PoseLoads pose = With(kMu, 2);
-  const double P = kPush / (std::cos(phi_) + kMu * std::sin(phi_));
-  EXPECT_NEAR(pose.drive_forces[0], -MomentOf(P), kRounding * kPush);
+  for (const double mu : {0.3, 1.5 / std::tan(phi_)}) {
+    const PoseLoads pose = With(mu, 2);
+    const double P = kPush / (std::cos(phi_) + mu * std::sin(phi_));
+    EXPECT_NEAR(pose.drive_forces[0], -MomentOf(P), kRounding * kPush);
+    EXPECT_FALSE(pose.jammed);
+  }
 }
 
 // With mu tan(phi) > 1 any force of the rod presses the slider into its guide harder than it pushes
 // it along.
 TEST_F(WeightlessSliderCrank, LocksWhereTheRodLeansMoreThanTheFrictionCone) {
   const double limit = 1 / std::tan(phi_);
-  EXPECT_FALSE(With(0.5 * limit, -2).jammed);
+  EXPECT_FALSE(With(0.99 * limit, -2).jammed);
   EXPECT_TRUE(With(1.1 * limit, -2).jammed);
 }
 
