@@ -19,6 +19,27 @@ void RemoveIdleMomentum(const LoadModel& model, LoadWorkspace* ws);
 /// accelerations, F_Bo and tau up to date.
 void SettleIdleFreedoms(const LoadModel& model, LoadWorkspace* ws);
 
+/// Where an idle freedom has got to: the discrete form of the above. Between one pose and the next,
+/// every link is displaced by d = [p_cm - p_cm'; log(R R'^T)], and
+///
+///   sum over links of [v_cm; w]_i' diag(m, I) d = 0,
+///
+/// with [v_cm; w]_i the links' motion in N_i. It speaks of link poses only, so that the result does
+/// not depend on where loops are cut.
+class IdlePositions {
+ public:
+  explicit IdlePositions(const LoadModel& model) : model_(model) {}
+  /// Takes the pose in ws as the one to come from.
+  void Remember(const TreeWorkspace<double>& ws);
+  /// Moves q along the idle freedoms until the above holds; ws is left at q, closed to `tolerance`.
+  void Settle(double tolerance, DependentSolver* dependents, TreeWorkspace<double>* ws,
+              VectorXd* q) const;
+
+ private:
+  const LoadModel& model_;
+  std::vector<Posed> before_;  ///< per node: orientation and centre of gravity
+};
+
 /// How much a unit rate of the k-th idle freedom shifts the centre of gravity of any link, in
 /// characteristic lengths: above roundoff, the loads depend on a motion that no drive prescribes.
 double IdleShift(const LoadModel& model, const LoadWorkspace& ws, int k);

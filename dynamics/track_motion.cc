@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "vmech/dynamics/hand_wrench.h"
+#include "vmech/dynamics/idle_freedoms.h"
 #include "vmech/dynamics/load_model.h"
 #include "vmech/kinematics/follow_hand.h"
 #include "vmech/kinematics/loops.h"
@@ -24,6 +25,7 @@ class Tracker {
         tolerance_(tolerance),
         ws_(tree_),
         dependents_(tree_, model_.partition),
+        idle_(model_),
         q_(prepared.q_start),
         q_trial_(q_),
         q_past_{q_, q_, q_},
@@ -35,6 +37,7 @@ class Tracker {
       position_.push_back(q_[q]);
     }
     EvaluatePose(tree_, q_, &ws_);
+    idle_.Remember(ws_);
     StartCutPositions();
   }
 
@@ -49,6 +52,7 @@ class Tracker {
         target_.push_back(from[k] + s * (to - from[k]));
       }
       MoveTo(target_, study_.times.front(), 0, 0);
+      SettleIdle();
       target_.clear();
     }
     history_ = 0;
@@ -59,6 +63,7 @@ class Tracker {
     target_.clear();
     for (const JointDrive& drive : study_.drives) target_.push_back(drive.law.At(time).position);
     MoveTo(target_, time, pose, 0);
+    SettleIdle();
   }
 
   PoseInput Input(double time) const {
@@ -163,6 +168,13 @@ class Tracker {
     UnwrapCutPositions();
   }
 
+  void SettleIdle() {
+    if (model_.partition.idle.empty()) return;
+    idle_.Settle(tolerance_, &dependents_, &ws_, &q_);
+    idle_.Remember(ws_);
+    UnwrapCutPositions();
+  }
+
   void StartCutPositions() {
     for (size_t l = 0; l < tree_.loops.size(); ++l) {
       const Joint& joint = tree_.mechanism.joints[tree_.loops[l].joint];
@@ -218,6 +230,7 @@ class Tracker {
   double tolerance_;
   TreeWorkspace<double> ws_;
   DependentSolver dependents_;
+  IdlePositions idle_;
   VectorXd q_, q_trial_, q_predicted_;
   VectorXd q_past_[3];  ///< accepted poses before q_, the latest first
   VectorXd step_;
