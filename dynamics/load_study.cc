@@ -161,9 +161,11 @@ void LoadStudyOptions::Validate() const {
 }
 
 std::string LoadStudyResult::BriefReport() const {
+  const auto plural = [](size_t count) { return count == 1 ? "" : "s"; };
   return fmt::format(
-      "{} poses, mobility {}, {} redundant equation(s), closure {:.1e}, power {:.1e}", poses.size(),
-      mobility, redundant_equations, max_closure, max_power_error);
+      "{} pose{}, mobility {}, {} redundant equation{}, closure {:.1e}, power {:.1e}", poses.size(),
+      plural(poses.size()), mobility, redundant_equations, plural(redundant_equations), max_closure,
+      max_power_error);
 }
 
 LoadStudyResult RunLoadStudy(const LoadStudy& study, const LoadStudyOptions& options) {

@@ -98,14 +98,14 @@ class Parser {
   }
 
   Bearing MakeBearing() {
-    constexpr double kMilli = 1e-3, kKilo = 1e3, kRpm = std::numbers::pi / 30;
+    constexpr double kPerMilli = 1e3, kKilo = 1e3, kRpm = std::numbers::pi / 30;
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     Bearing bearing;
     bearing.designation = row_["designation"];
     bearing.kind = ReadKind();
-    bearing.bore = ReadNumber("d_mm") * kMilli;
-    bearing.outer_diameter = ReadNumber("D_mm") * kMilli;
-    bearing.width = ReadNumber("B_mm") * kMilli;
+    bearing.bore = ReadNumber("d_mm") / kPerMilli;
+    bearing.outer_diameter = ReadNumber("D_mm") / kPerMilli;
+    bearing.width = ReadNumber("B_mm") / kPerMilli;
     bearing.dynamic_rating = ReadNumber("C_kN") * kKilo;
     bearing.static_rating = ReadNumber("C0_kN") * kKilo;
     if (bearing.kind == BearingKind::kDeepGrooveBall) bearing.f0 = ReadNumber("f0");
