@@ -4,7 +4,6 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
-#include <cmath>
 
 namespace vmech {
 
@@ -18,19 +17,15 @@ VectorXd MinimumNormSolution(const MatrixXd& A, const VectorXd& b) {
 
 NullSpace FindNullSpace(const MatrixXd& A, double tolerance) {
   const Eigen::Index n = A.cols();
-  if (A.rows() == 0 || n == 0) return {0, MatrixXd::Identity(n, n), 0};
+  if (A.rows() == 0 || n == 0) return {0, MatrixXd::Identity(n, n)};
   Eigen::ColPivHouseholderQR<MatrixXd> qr(A.transpose());
   // Eigen's threshold is relative to the largest pivot; where that is rounding, nothing counts.
-  if (qr.maxPivot() <= tolerance) return {0, MatrixXd::Identity(n, n), 0};
+  if (qr.maxPivot() <= tolerance) return {0, MatrixXd::Identity(n, n)};
   qr.setThreshold(tolerance / std::min(1.0, qr.maxPivot()));
   NullSpace space;
   space.rank = static_cast<int>(qr.rank());
   const MatrixXd Q = qr.householderQ() * MatrixXd::Identity(n, n);
   space.basis = Q.rightCols(n - space.rank);
-  if (space.rank > 0) {
-    space.smallest_kept =
-        std::abs(qr.matrixR()(space.rank - 1, space.rank - 1) / qr.matrixR()(0, 0));
-  }
   return space;
 }
 

@@ -18,8 +18,7 @@ VectorXd MinimumNormSolution(const MatrixXd& A, const VectorXd& b);
 /// Rank and null space of a matrix by Householder QR of its transpose with column pivoting.
 struct NullSpace {
   int rank = 0;
-  MatrixXd basis;            ///< [columns, columns - rank], orthonormal
-  double smallest_kept = 0;  ///< last pivot that counted, relative to the largest
+  MatrixXd basis;  ///< [columns, columns - rank], orthonormal
 };
 
 /// For matrices whose entries are of the order of 1: pivots below `tolerance`, or `tolerance` times
