@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "vmech/kinematics/tree_workspace.h"
+
+namespace vmech {
+
+/// The inertia of a rigid body or of several as one, about the origin of W, axes of W.
+struct CompositeInertia {
+  double mass = 0;
+  Vector3d moment = Vector3d::Zero();  ///< mass times centre of gravity [kg m]
+  Matrix3d I_Wo = Matrix3d::Zero();    ///< [kg m^2]
+};
+
+/// Mass matrix M [nv, nv] of the tree, cut joints left open, by composite rigid bodies [Walker &
+/// Orin 1982]: everything that joint i carries moves as one body,
+///
+///   M_ij = S_j' I_i^c S_i,   j on the way from i to the ground.
+///
+/// Needs X_WB. `bodies` [nodes] is memory. O(n depth), no allocation.
+void CompositeMassMatrix(const KinematicTree& tree, const TreeWorkspace<double>& ws,
+                         std::vector<CompositeInertia>* bodies, MatrixXd* M);
+
+}  // namespace vmech

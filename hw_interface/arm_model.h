@@ -1,0 +1,69 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <memory>
+#include <vector>
+
+#include "vmech/dynamics/composite_inertia.h"
+#include "vmech/kinematics/kinematic_tree.h"
+#include "vmech/kinematics/tree_workspace.h"
+
+namespace vmech {
+
+inline constexpr int kMaxArmJoints = 16;
+
+/// A master that is an arm: an open chain of revolute and prismatic joints with its mass
+/// properties, limits and passive forces. World of the tree is the master's base D.
+struct ArmDescription {
+  KinematicTree tree;
+  int handle_node = -1;
+  Posed X_BH;             ///< the handle in its node
+  VectorXd torque_limit;  ///< of each motor [N m] or [N]
+  VectorXd posture;       ///< the nominal posture [rad] or [m]
+};
+
+/// Kinematics and rigid-body dynamics of an arm with memory for one posture:
+///
+///   V_DH = J v,   M(q) v' + h(q, v) = tau + J' F_Ho,
+///
+/// F_Ho what acts on the handle from outside. No function but the constructor allocates.
+class ArmModel {
+ public:
+  /// @throws std::invalid_argument if the arm is not an open chain of at most kMaxArmJoints joints.
+  explicit ArmModel(std::shared_ptr<const ArmDescription> arm);
+
+  const ArmDescription& description() const noexcept { return *arm_; }
+  std::shared_ptr<const ArmDescription> shared_description() const noexcept { return arm_; }
+  int joints() const noexcept { return arm_->tree.nv; }
+
+  /// Everything below is at the posture set last; `q` has joints() entries.
+  void SetPosture(const double* q) noexcept;
+
+  const Posed& X_DH() const noexcept { return X_DH_; }
+  const MatrixXd& J() const noexcept { return J_; }  ///< [6, joints], about Ho, axes of D
+
+  /// The torques that hold the arm still against gravity, h(q, 0).
+  const VectorXd& GravityTorques() noexcept;
+  /// M(q).
+  const MatrixXd& MassMatrix() noexcept;
+  /// - sum m g . p_cm [J], zero where every centre of gravity is at the height of Do.
+  double PotentialEnergy() const noexcept;
+  /// v' from the velocities, the joints' torques (motors and passive ones together) and the wrench
+  /// on the handle. `v`, `torque` have joints() entries; so has the result.
+  const VectorXd& Accelerations(const VectorXd& v, const VectorXd& torque,
+                                const Wrenchd& F_Ho) noexcept;
+
+ private:
+  void BiasForces(const VectorXd& v, const Wrenchd& F_Ho) noexcept;
+
+  std::shared_ptr<const ArmDescription> arm_;
+  TreeWorkspace<double> ws_;
+  std::vector<CompositeInertia> bodies_;
+  std::vector<Wrenchd> applied_;
+  Posed X_DH_;
+  MatrixXd J_, M_;
+  VectorXd bias_, rest_, acceleration_;
+  Eigen::LLT<MatrixXd> factor_;
+};
+
+}  // namespace vmech
