@@ -17,8 +17,9 @@ EXAMPLES = pathlib.Path()
 # Degrees of freedom of every example, counted by hand from how it is built.
 MOBILITY = {
     "andrews-squeezer": 1, "beam-on-three-supports": 0, "bennett": 1, "bricard": 1, "crank": 1,
-    "delta-robot": 3, "door-on-two-hinges": 1, "flyball-governor": 4, "four-bar": 1,
-    "marghitu-slider-crank": 1, "modelica-engine1a": 1, "modelica-four-bar": 1,
+    "delta-robot": 3, "dietmaier-platform": 6, "door-on-two-hinges": 1, "flyball-governor": 4,
+    "four-bar": 1, "manseur-doty": 6, "marghitu-slider-crank": 1, "modelica-engine1a": 1,
+    "modelica-four-bar": 1,
     "n-window-four-bar": 1, "rssr": 2, "rsup": 1, "slider-crank": 1, "spherical-four-bar": 1,
     "square-four-bar": 1, "stewart-gough": 6, "sundials-slider-crank": 1, "two-link-arm": 2,
 }

@@ -41,7 +41,23 @@ const std::vector<DrivenExample>& DrivenExamples() {
       {"flyball-governor",
        {{"spin", 6}, {"slide", 0.05}, {"right_hinge", 0.2}, {"left_hinge", -0.15}},
        "right_rod"},
-      {"sundials-slider-crank", {{"main", 1}}, "rod"}};
+      {"sundials-slider-crank", {{"main", 1}}, "rod"},
+      {"dietmaier-platform",
+       {{"leg1", 0.01},
+        {"leg2", -0.01},
+        {"leg3", 0.01},
+        {"leg4", 0.02},
+        {"leg5", -0.01},
+        {"leg6", 0.01}},
+       "platform"},
+      {"manseur-doty",
+       {{"joint1", 1},
+        {"joint2", -0.5},
+        {"joint3", 0.7},
+        {"joint4", 0.6},
+        {"joint5", -0.8},
+        {"joint6", 1}},
+       "link6"}};
   return examples;
 }
 

@@ -31,7 +31,9 @@ inline const std::vector<std::string>& ExampleNames() {
                                               "modelica-engine1a",
                                               "door-on-two-hinges",
                                               "flyball-governor",
-                                              "sundials-slider-crank"};
+                                              "sundials-slider-crank",
+                                              "dietmaier-platform",
+                                              "manseur-doty"};
   return names;
 }
 
