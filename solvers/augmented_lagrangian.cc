@@ -41,8 +41,9 @@ StepReport Step(ConstrainedLeastSquares& problem, const AugmentedLagrangianOptio
   if (!step.Compute(problem, *x, options.damping, options.max_step)) return report;
   report.constraint_norm = step.at_x.c.norm();
   report.step_norm = step.dx.cwiseAbs().maxCoeff();
-  report.bias_bound = step.c_model.norm();
-  step.UpdateMultipliers(options.weight, &workspace->multipliers);
+  const VectorXd& c_after = step.PredictConstraints();
+  report.bias_bound = c_after.norm();
+  workspace->multipliers += options.weight * options.weight * c_after;
   problem.Plus(*x, step.dx, x);
   report.ok = true;
   return report;

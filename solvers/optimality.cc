@@ -154,6 +154,13 @@ bool Linearization::AllFinite() const {
   return r.allFinite() && c.allFinite() && J.allFinite() && C.allFinite();
 }
 
+void Linearization::Swap(Linearization* other) noexcept {
+  r.swap(other->r);
+  c.swap(other->c);
+  J.swap(other->J);
+  C.swap(other->C);
+}
+
 Optimality MeasureOptimality(const std::vector<Bound>& bounds, const VectorXd& x,
                              const Linearization& at_x, double rank_tolerance) {
   Optimality result;

@@ -12,6 +12,7 @@ struct Linearization {
   explicit Linearization(const ProblemSizes& sizes);
   void Evaluate(ConstrainedLeastSquares& problem, const VectorXd& x);
   bool AllFinite() const;
+  void Swap(Linearization* other) noexcept;  ///< exchanges memory, copies nothing
 };
 
 /// How near a point is to a constrained minimum; see Summary for the sign of the multipliers.

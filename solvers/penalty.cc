@@ -24,7 +24,8 @@ StepReport Step(ConstrainedLeastSquares& problem, const PenaltyOptions& options,
   if (!step.Compute(problem, *x, options.damping, options.max_step)) return report;
   report.constraint_norm = step.at_x.c.norm();
   report.step_norm = step.dx.cwiseAbs().maxCoeff();
-  report.bias_bound = step.c_model.norm();  // lambda^2 (c + C dx) is the multiplier estimate
+  report.bias_bound =
+      step.PredictConstraints().norm();  // lambda^2 (c + C dx) is the multiplier estimate
   problem.Plus(*x, step.dx, x);
   report.ok = true;
   return report;
@@ -39,11 +40,7 @@ FastOutcome Solve(ConstrainedLeastSquares& problem, const PenaltyOptions& option
   FastOutcome outcome;
   outcome.iterations = descent.iterations;
   outcome.constraint_norm = step.at_x.c.size() > 0 ? step.at_x.c.cwiseAbs().maxCoeff() : 0.0;
-  // |c| <= |c + C dx| + |C dx|, dx the step that would come next: the first is multiplier /
-  // lambda^2, the second what the iteration has not reached yet.
-  if (step.Compute(problem, *x, options.damping, options.max_step)) {
-    outcome.bias_bound = step.c_model.norm() + (step.c_model - step.at_x.c).norm();
-  }
+  outcome.bias_bound = step.at_x.c.norm();  // lambda^2 c is the multiplier estimate
   outcome.claim = descent.stationary ? SolveStatus::kBiased
                   : descent.ok       ? SolveStatus::kIterationLimit
                                      : SolveStatus::kStalled;

@@ -11,98 +11,79 @@ constexpr double kFirstDamping = 1e-6;  // after the first refusal
 constexpr double kDampingGrowth = 4;
 constexpr double kSufficient = 1e-4;  // part of the promised decrease that accepts a step
 constexpr int kMaxCorrections = 2;
+constexpr double kScaleFloor = 1e-9;  // of the damping of a column that nothing depends on
 // Changes of phi smaller than this (relative) are rounding and do not refuse a step.
 constexpr double kRounding = 1e-13;
 
 }  // namespace
 
-WeightedStep::WeightedStep(const ConstrainedLeastSquares& problem) : at_x(problem.sizes()) {
+WeightedStep::WeightedStep(const ConstrainedLeastSquares& problem)
+    : at_x(problem.sizes()), equations_(problem.sizes().tangents), at_trial_(problem.sizes()) {
   const ProblemSizes& sizes = problem.sizes();
-  dx = g_ = scale_ = objective_gradient_ = VectorXd::Zero(sizes.tangents);
-  H_ = factor_ = S_ = MatrixXd::Zero(sizes.tangents, sizes.tangents);
-  c_model = shifted_ = trial_c_ = VectorXd::Zero(sizes.constraints);
-  trial_r_ = VectorXd::Zero(sizes.residuals);
-  trial_x_ = saved_x_ = VectorXd::Zero(sizes.coordinates);
-  held_.setConstant(sizes.tangents, false);
+  dx = scale_ = damping_ = VectorXd::Zero(sizes.tangents);
+  S_ = MatrixXd::Zero(sizes.tangents, sizes.tangents);
+  c_model_ = forces_ = VectorXd::Zero(sizes.constraints);
+  trial_x_ = VectorXd::Zero(sizes.coordinates);
 }
 
 bool WeightedStep::Linearize(ConstrainedLeastSquares& problem, const VectorXd& x, double lambda,
                              const VectorXd& mu) noexcept {
   at_x.Evaluate(problem, x);
+  return FormEquations(problem, x, lambda, mu);
+}
+
+bool WeightedStep::FormEquations(ConstrainedLeastSquares& problem, const VectorXd& x, double lambda,
+                                 const VectorXd& mu) noexcept {
   const double weight = lambda * lambda;
-  const Eigen::Index n = g_.size();
-  // g = J'r + C'(mu + lambda^2 c),   H = J'J + lambda^2 C'C (lower triangle)
-  shifted_ = mu + weight * at_x.c;
-  for (Eigen::Index j = 0; j < n; ++j) {
-    objective_gradient_[j] = at_x.J.col(j).dot(at_x.r);
-    g_[j] = objective_gradient_[j] + at_x.C.col(j).dot(shifted_);
-    for (Eigen::Index i = j; i < n; ++i) {
-      H_(i, j) = at_x.J.col(i).dot(at_x.J.col(j)) + weight * at_x.C.col(i).dot(at_x.C.col(j));
-    }
-  }
+  for (int i = 0; i < forces_.size(); ++i) forces_[i] = mu[i] + weight * at_x.c[i];
+  equations_.Form(at_x, weight, forces_);
   if (use_curvature) {
-    problem.Curvature(x, shifted_, &S_);
-    H_ += S_;
+    problem.Curvature(x, forces_, &S_);
+    equations_.H += S_;
   }
   HoldAtBounds(problem, x);
-  return g_.allFinite() && std::isfinite(H_.diagonal().sum());
+  double sum = 0;
+  for (int j = 0; j < equations_.size(); ++j) sum += std::abs(equations_.g[j]) + equations_.H(j, j);
+  return std::isfinite(sum);
 }
 
 void WeightedStep::HoldAtBounds(const ConstrainedLeastSquares& problem,
                                 const VectorXd& x) noexcept {
-  held_.setConstant(false);
+  equations_.held.setConstant(false);
   for (const Bound& bound : problem.bounds()) {
-    const double value = x[bound.coordinate], slope = g_[bound.tangent];
-    held_[bound.tangent] |= (value <= bound.lower && slope > 0) || bound.lower == bound.upper ||
-                            (value >= bound.upper && slope < 0);
+    const double value = x[bound.coordinate], slope = equations_.g[bound.tangent];
+    equations_.held[bound.tangent] |= (value <= bound.lower && slope > 0) ||
+                                      bound.lower == bound.upper ||
+                                      (value >= bound.upper && slope < 0);
   }
 }
 
 bool WeightedStep::Compute(const ConstrainedLeastSquares& problem, const VectorXd& x,
                            double damping, double max_step) noexcept {
-  scale_ = scale_.cwiseMax(H_.diagonal().cwiseAbs());
-  if (!Factorize(damping)) return false;
-  for (Eigen::Index j = 0; j < dx.size(); ++j) dx[j] = held_[j] ? 0.0 : -g_[j];
-  BackSubstitute();
+  const int n = equations_.size();
+  double largest = 1e-30;
+  for (int j = 0; j < n; ++j) {
+    scale_[j] = std::max(scale_[j], std::abs(equations_.H(j, j)));
+    largest = std::max(largest, scale_[j]);
+  }
+  for (int j = 0; j < n; ++j) damping_[j] = damping * (scale_[j] + kScaleFloor * largest);
+  if (!equations_.Factor(damping_)) return false;
+  for (int j = 0; j < n; ++j) dx[j] = -equations_.g[j];
+  equations_.Solve(&dx);
   Clip(problem, x, max_step);
-  c_model = at_x.c;
-  for (Eigen::Index j = 0; j < dx.size(); ++j) c_model += dx[j] * at_x.C.col(j);
-  return dx.allFinite();
+  return std::isfinite(dx.sum());
 }
 
-// H + damping diag(scale) = L D L', unit L below the diagonal of factor_, 1/D on it.
-bool WeightedStep::Factorize(double damping) noexcept {
-  const Eigen::Index n = g_.size();
-  const double floor = 1e-9 * std::max(scale_.maxCoeff(), 1e-30);
-  for (Eigen::Index j = 0; j < n; ++j) {
-    for (Eigen::Index i = j; i < n; ++i) {
-      factor_(i, j) = held_[i] || held_[j] ? double(i == j) : H_(i, j);
-    }
-    if (!held_[j]) factor_(j, j) += damping * (scale_[j] + floor);
+const VectorXd& WeightedStep::PredictConstraints() noexcept {
+  const int closures = static_cast<int>(at_x.c.size());
+  const double* C_j = at_x.C.data();
+  double* const c_model = c_model_.data();
+  for (int i = 0; i < closures; ++i) c_model[i] = at_x.c[i];
+  for (double dx_j : dx) {
+    for (int i = 0; i < closures; ++i) c_model[i] += C_j[i] * dx_j;
+    C_j += closures;
   }
-  for (Eigen::Index j = 0; j < n; ++j) {
-    const double pivot = factor_(j, j);
-    if (!(pivot > 0)) return false;
-    const double inverse = 1 / pivot;
-    for (Eigen::Index k = j + 1; k < n; ++k) {
-      const double scaled = factor_(k, j) * inverse;
-      for (Eigen::Index i = k; i < n; ++i) factor_(i, k) -= scaled * factor_(i, j);
-    }
-    for (Eigen::Index i = j + 1; i < n; ++i) factor_(i, j) *= inverse;
-    factor_(j, j) = inverse;
-  }
-  return true;
-}
-
-void WeightedStep::BackSubstitute() noexcept {
-  const Eigen::Index n = g_.size();
-  for (Eigen::Index j = 0; j < n; ++j) {
-    for (Eigen::Index i = j + 1; i < n; ++i) dx[i] -= factor_(i, j) * dx[j];
-  }
-  for (Eigen::Index j = n - 1; j >= 0; --j) {
-    dx[j] *= factor_(j, j);
-    for (Eigen::Index i = j + 1; i < n; ++i) dx[j] -= factor_(i, j) * dx[i];
-  }
+  return c_model_;
 }
 
 void WeightedStep::Clip(const ConstrainedLeastSquares& problem, const VectorXd& x,
@@ -134,7 +115,9 @@ WeightedStep::Descent WeightedStep::Minimize(ConstrainedLeastSquares& problem, d
     }
     // Damping follows the gain of the step (Nielsen 1999).
     if (gain >= 0) {
-      damping = std::max(damping * std::max(0.1, 1 - std::pow(2 * gain - 1, 3)), least_damping);
+      const double surplus = 2 * gain - 1;
+      damping *= std::max(0.1, 1 - surplus * surplus * surplus);
+      damping = std::max(damping, least_damping);
       growth = kDampingGrowth;
     } else if ((damping = std::max(growth * damping, kFirstDamping)) > kMaxDamping) {
       descent.ok = descent.stationary = WithinNoise();  // as low as rounding lets it get
@@ -147,17 +130,23 @@ WeightedStep::Descent WeightedStep::Minimize(ConstrainedLeastSquares& problem, d
   return descent;
 }
 
+// 1/2 |r|^2 + (mu + lambda^2/2 c)'c, in plain loops: the vectors are short.
 double WeightedStep::Phi(const VectorXd& r, const VectorXd& c, double lambda,
                          const VectorXd& mu) noexcept {
-  return 0.5 * r.squaredNorm() + mu.dot(c) + 0.5 * lambda * lambda * c.squaredNorm();
+  const double half_weight = 0.5 * lambda * lambda;
+  double half_squares = 0, penalty = 0;
+  for (double r_i : r) half_squares += 0.5 * r_i * r_i;
+  for (int i = 0; i < c.size(); ++i) penalty += (mu[i] + half_weight * c[i]) * c[i];
+  return half_squares + penalty;
 }
 
 double WeightedStep::GradientError() const noexcept {
-  double error = 0;
-  for (Eigen::Index i = 0; i < g_.size(); ++i) {
-    if (!held_[i]) error = std::max(error, std::abs(g_[i]));
+  double error = 0, scale = 1;
+  for (int j = 0; j < equations_.size(); ++j) {
+    if (!equations_.held[j]) error = std::max(error, std::abs(equations_.g[j]));
+    scale = std::max(scale, std::abs(equations_.objective_gradient[j]));
   }
-  return error / std::max(1.0, objective_gradient_.cwiseAbs().maxCoeff());
+  return error / scale;
 }
 
 // Moves *x by dx and linearises there if phi falls enough, if need be after second-order
@@ -171,29 +160,36 @@ double WeightedStep::TryStep(ConstrainedLeastSquares& problem, double lambda, co
   noise_ = kRounding * std::abs(phi);
   for (int correction = 0;; ++correction) {
     problem.Plus(*x, dx, &trial_x_);
-    problem.Evaluate(trial_x_, &trial_r_, nullptr, &trial_c_, nullptr);
-    const double decrease = phi - Phi(trial_r_, trial_c_, lambda, mu);
+    at_trial_.Evaluate(problem, trial_x_);  // with derivatives: most steps are taken
+    const double decrease = phi - Phi(at_trial_.r, at_trial_.c, lambda, mu);
     if (decrease >= kSufficient * promised_ - noise_) {
-      saved_x_ = *x;
-      *x = trial_x_;
-      const bool finite = Linearize(problem, *x, lambda, mu);
+      const bool finite = MoveToTrial(problem, lambda, mu, x);
       if (finite && !WithinNoise()) return std::clamp(decrease / promised_, 0.0, 1.0);
       if (finite && GradientError() < error) return 1;
-      *x = saved_x_;
-      static_cast<void>(Linearize(problem, *x, lambda, mu));
+      static_cast<void>(MoveToTrial(problem, lambda, mu, x));  // back
       return -1;
     }
-    if (correction == kMaxCorrections || !trial_c_.allFinite()) return -1;
+    if (correction == kMaxCorrections || !at_trial_.c.allFinite()) return -1;
     CorrectForCurvature(problem, *x, lambda, max_step);
   }
 }
 
+// Exchanges *x and the trial point, and what is known of them.
+bool WeightedStep::MoveToTrial(ConstrainedLeastSquares& problem, double lambda, const VectorXd& mu,
+                               VectorXd* x) noexcept {
+  std::swap_ranges(x->begin(), x->end(), trial_x_.begin());
+  at_x.Swap(&at_trial_);
+  return FormEquations(problem, *x, lambda, mu);
+}
+
 // -(g'dx + dx'H dx / 2), from the lower triangle of H.
 double WeightedStep::PromisedDecrease() const noexcept {
-  double decrease = -g_.dot(dx);
-  for (Eigen::Index j = 0; j < dx.size(); ++j) {
-    decrease -= 0.5 * H_(j, j) * dx[j] * dx[j];
-    for (Eigen::Index i = j + 1; i < dx.size(); ++i) decrease -= H_(i, j) * dx[i] * dx[j];
+  const MatrixXd& H = equations_.H;
+  double decrease = 0;
+  for (int j = 0; j < equations_.size(); ++j) {
+    double slope = equations_.g[j] + 0.5 * H(j, j) * dx[j];
+    for (int i = j + 1; i < equations_.size(); ++i) slope += H(i, j) * dx[i];
+    decrease -= slope * dx[j];
   }
   return std::max(decrease, std::numeric_limits<double>::min());
 }
@@ -203,17 +199,12 @@ double WeightedStep::PromisedDecrease() const noexcept {
 // curved constraint, which a large lambda would otherwise refuse.
 void WeightedStep::CorrectForCurvature(const ConstrainedLeastSquares& problem, const VectorXd& x,
                                        double lambda, double max_step) noexcept {
-  trial_c_ -= at_x.c;
-  for (Eigen::Index j = 0; j < dx.size(); ++j) trial_c_ -= dx[j] * at_x.C.col(j);
+  forces_ = lambda * lambda * (at_trial_.c - PredictConstraints());
   for (Eigen::Index j = 0; j < dx.size(); ++j) {
-    dx[j] = held_[j] ? 0.0 : -g_[j] - lambda * lambda * at_x.C.col(j).dot(trial_c_);
+    dx[j] = -equations_.g[j] - at_x.C.col(j).dot(forces_);
   }
-  BackSubstitute();
+  equations_.Solve(&dx);
   Clip(problem, x, max_step);
-}
-
-void WeightedStep::UpdateMultipliers(double lambda, VectorXd* mu) noexcept {
-  *mu += lambda * lambda * c_model;
 }
 
 }  // namespace vmech

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vmech/solvers/normal_equations.h"
 #include "vmech/solvers/optimality.h"
 
 namespace vmech {
@@ -13,10 +14,9 @@ namespace vmech {
 ///     [ J        ]        [ r                        ]
 ///     [ lambda C ] dx = - [ lambda (c + mu/lambda^2) ]
 ///
-/// solved by its normal equations H dx = -g in place (LDL'), with Marquardt damping relative to
-/// the diagonal of H (the largest so far in one minimisation, as in MINPACK), and with coordinates
-/// held that press against a bound. All memory is taken by the constructor; nothing else here
-/// allocates or throws.
+/// solved by its normal equations, with Marquardt damping relative to the diagonal of H (the
+/// largest so far in one minimisation, as in MINPACK), and with coordinates held that press
+/// against a bound. All memory is taken by the constructor; nothing else here allocates or throws.
 class WeightedStep {
  public:
   explicit WeightedStep(const ConstrainedLeastSquares& problem);
@@ -29,6 +29,9 @@ class WeightedStep {
   /// not positive definite.
   [[nodiscard]] bool Compute(const ConstrainedLeastSquares& problem, const VectorXd& x,
                              double damping, double max_step) noexcept;
+
+  /// c + C dx: the constraint error that the linear model expects after the step.
+  const VectorXd& PredictConstraints() noexcept;
 
   /// Forgets the scale of the damping that Compute() has gathered.
   void ForgetScale() noexcept { scale_.setZero(); }
@@ -44,34 +47,35 @@ class WeightedStep {
                                  const VectorXd& mu, double damping, double max_step,
                                  double tolerance, int max_iterations, VectorXd* x) noexcept;
 
-  /// mu + lambda^2 (c + C dx): the multipliers that the linear model gives after the step.
-  void UpdateMultipliers(double lambda, VectorXd* mu) noexcept;
-
-  Linearization at_x;          ///< of the last Linearize()
+  Linearization at_x;          ///< of the last Linearize(), or where Minimize() has ended
   VectorXd dx;                 ///< the step
-  VectorXd c_model;            ///< c + C dx
   bool use_curvature = false;  ///< H + S, S the problem's Curvature() at mu + lambda^2 c
 
  private:
   static double Phi(const VectorXd& r, const VectorXd& c, double lambda,
                     const VectorXd& mu) noexcept;
+  [[nodiscard]] bool FormEquations(ConstrainedLeastSquares& problem, const VectorXd& x,
+                                   double lambda, const VectorXd& mu) noexcept;
   double GradientError() const noexcept;
   double TryStep(ConstrainedLeastSquares& problem, double lambda, const VectorXd& mu,
                  double max_step, VectorXd* x) noexcept;
+  bool MoveToTrial(ConstrainedLeastSquares& problem, double lambda, const VectorXd& mu,
+                   VectorXd* x) noexcept;
   bool WithinNoise() const noexcept { return promised_ <= noise_; }
   double PromisedDecrease() const noexcept;
   void CorrectForCurvature(const ConstrainedLeastSquares& problem, const VectorXd& x, double lambda,
                            double max_step) noexcept;
   void HoldAtBounds(const ConstrainedLeastSquares& problem, const VectorXd& x) noexcept;
-  bool Factorize(double damping) noexcept;
-  void BackSubstitute() noexcept;
   void Clip(const ConstrainedLeastSquares& problem, const VectorXd& x, double max_step) noexcept;
 
-  MatrixXd H_, S_, factor_;
+  NormalEquations equations_;
+  Linearization at_trial_;
+  VectorXd trial_x_;
   VectorXd scale_;  // largest diagonal of H so far: a column that fades keeps its damping (MINPACK)
+  VectorXd damping_, c_model_;
+  VectorXd forces_;  // mu + lambda^2 c, what the constraints pull with
+  MatrixXd S_;
   double promised_ = 0, noise_ = 0;  // decrease of phi: by the model, and lost in rounding
-  VectorXd g_, objective_gradient_, shifted_, trial_x_, trial_r_, trial_c_, saved_x_;
-  Eigen::Matrix<bool, Eigen::Dynamic, 1> held_;
 };
 
 }  // namespace vmech
