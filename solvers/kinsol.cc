@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "vmech/solvers/held_coordinates.h"
 #include "vmech/solvers/tangent_chart.h"
 
 namespace vmech {
@@ -163,7 +164,6 @@ bool BoundsHold(const ConstrainedLeastSquares& problem, const VectorXd& x) {
 
 void KinsolOptions::Validate() const {
   CheckRange("KinsolOptions", "tolerance", tolerance, 1e-16, 1e-3);
-  for (int tangent : held) CheckRange("KinsolOptions", "held", tangent, 0, 1e9);
   stopping.Validate();
 }
 
@@ -177,7 +177,8 @@ Summary Solve(ConstrainedLeastSquares& problem, const KinsolOptions& options, co
     outcome.iterations = kinsol.iterations();
     return outcome;
   };
-  return Run("kinsol", problem, options.stopping, x0, [&](CountedProblem& counted, VectorXd* x) {
+  HeldCoordinates driven(problem, options.held);
+  return Run("kinsol", driven, options.stopping, x0, [&](CountedProblem& counted, VectorXd* x) {
     Outcome outcome = SolveInCharts(counted, options.stopping, x, in_chart);
     if (!BoundsHold(problem, *x)) {
       outcome.claim = SolveStatus::kUnsuitable;

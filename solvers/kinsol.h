@@ -17,7 +17,7 @@ namespace vmech {
 /// status is kUnsuitable.
 /// [Hindmarsh et al. 2005]
 struct KinsolOptions {
-  /// Tangents that keep the value of the start.
+  /// Tangents that keep the value of the start; the verdict is on the others.
   std::vector<int> held;
   /// Largest residual of the system that ends the iteration, in [1e-16, 1e-3].
   double tolerance = 1e-13;

@@ -1,4 +1,6 @@
 #include "vmech/solvers/kinsol.h"
+
+#include "vmech/solvers/held_coordinates.h"
 #include "vmech/solvers/run.h"
 
 namespace vmech {
@@ -8,7 +10,8 @@ void KinsolOptions::Validate() const {
 }
 
 Summary Solve(ConstrainedLeastSquares& problem, const KinsolOptions& options, const VectorXd& x0) {
-  return Run("kinsol", problem, options.stopping, x0, [](CountedProblem&, VectorXd*) {
+  HeldCoordinates driven(problem, options.held);
+  return Run("kinsol", driven, options.stopping, x0, [](CountedProblem&, VectorXd*) {
     return Outcome{SolveStatus::kUnavailable,
                    "vmech was built without KINSOL; install libsundials-dev and build again"};
   });

@@ -18,6 +18,7 @@ constexpr double kClosingDamping = 1e-2;  // of the step that closes c, times |c
 constexpr double kLeastDamping = 1e-13;   // of the tangential step, relative to Z'BZ
 constexpr double kFirstDamping = 1e-6;    // after the first trouble
 constexpr double kDampingGrowth = 10;
+constexpr double kLeastWeight = 1e-3;  // of |c| in the merit, where no multiplier asks for one
 
 class NullspaceSolver {
  public:
@@ -189,7 +190,7 @@ class NullspaceSolver {
   // merit along d.
   double RaiseWeight(double reduction) {
     const double needed = 1.5 * step_mu_.norm();
-    nu_ = std::max(needed, 0.5 * (nu_ + needed));
+    nu_ = std::max({needed, 0.5 * (nu_ + needed), kLeastWeight});
     const double objective_slope = gradient_.dot(d_);
     if (reduction > 0 && objective_slope - nu_ * reduction > -0.5 * nu_ * reduction) {
       nu_ = std::max(nu_, 2 * objective_slope / reduction);

@@ -129,8 +129,10 @@ double MaxAbs(const VectorXd& v) {
 }
 
 double InfeasibilitySlope(const Linearization& at_x, const std::vector<ActiveBound>& active) {
-  const double scale = at_x.C.norm() * at_x.c.norm();
-  if (scale == 0) return at_x.c.norm() == 0 ? 1 : 0;
+  const double error = at_x.c.norm();
+  if (error == 0) return 1;
+  // Where C vanishes too, linear equations close c by steps of more than one unit only.
+  const double scale = error * std::max(at_x.C.norm(), error);
   VectorXd slope = at_x.C.transpose() * at_x.c;
   for (const ActiveBound& bound : active) {
     if (bound.sign * slope[bound.tangent] < 0) slope[bound.tangent] = 0;  // held by the bound

@@ -24,7 +24,7 @@ struct Optimality {
   /// max(1, max |J'r|). mu and z minimise |J'r + C'mu + z| under the signs that z must have, so
   /// no multiplier of a back end enters.
   double kkt_error = 0;
-  /// |C'c| over |C| |c|, bounds allowed for: near 0 where |c| is stationary but not zero.
+  /// |C'c| over |c| max(|C|, |c|), bounds allowed for: near 0 where |c| is stationary but not zero.
   double infeasibility_slope = 1;
   VectorXd multipliers;
   VectorXd bound_multipliers;

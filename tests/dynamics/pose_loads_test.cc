@@ -1,24 +1,13 @@
+// The sanitizers bring an allocator of theirs.
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+
 #include "vmech/dynamics/pose_loads.h"
 
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstddef>
-
 #include "driven_examples.h"
+#include "support/count_allocations.h"
 #include "vmech/dynamics/load_model.h"
-
-// Counts every allocation of this program, Eigen's own included. The sanitizers bring an allocator
-// of theirs.
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-static std::atomic<long> allocations{0};
-extern "C" {
-void* __libc_malloc(std::size_t size);  // NOLINT: glibc's name
-void* malloc(std::size_t size) {
-  ++allocations;
-  return __libc_malloc(size);
-}
-}
 
 namespace vmech {
 namespace {

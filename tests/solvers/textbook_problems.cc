@@ -308,6 +308,25 @@ std::vector<TextbookProblem> MakeAll() {
   return all;
 }
 
+// Constraints that no point meets.
+std::vector<TextbookProblem> MakeInfeasible() {
+  constexpr double kFree = -std::numeric_limits<double>::infinity();
+  const auto pull = [](const V& x) { return V{x[1] - 1}; };
+  const auto circle_and_far_line = [](const V& x) {
+    return V{Square(x[0]) + Square(x[1]) - 1, x[0] - 3};
+  };
+  const auto parallel_lines = [](const V& x) { return V{x[0] + x[1] - 1, 2 * (x[0] + x[1]) - 4}; };
+  const auto line = [](const V& x) { return V{x[0] + x[1] - 3}; };
+  const auto never_zero = [](const V& x) { return V{Square(x[0]) + 1}; };
+  return {
+      Formula("CircleAndFarLine", Vec({0.5, 0.5}), {}, 0, pull, circle_and_far_line),
+      Formula("ParallelLines", Vec({0.5, 0.5}), {}, 0, pull, parallel_lines),
+      Formula("LineBeyondBounds", Vec({0.5, 0.5}), {}, 0, pull, line,
+              {{0, 0, kFree, 1}, {1, 1, kFree, 1}}),
+      Formula("ParabolaAboveZero", Vec({0.5, 0.5}), {}, 0, pull, never_zero),
+  };
+}
+
 }  // namespace
 
 void FormulaProblem::Evaluate(const VectorXd& x, VectorXd* r, MatrixXd* J, VectorXd* c,
@@ -337,12 +356,9 @@ const TextbookProblem& FindProblem(const std::string& name) {
   throw std::invalid_argument("no test problem is called " + name);
 }
 
-std::unique_ptr<ConstrainedLeastSquares> InfeasibleProblem() {
-  return std::make_unique<FormulaProblem>(
-      ProblemSizes{2, 2, 1, 2}, [](const V& x) { return V{x[1] - 1}; },
-      [](const V& x) {
-        return V{Square(x[0]) + Square(x[1]) - 1, x[0] - 3};
-      });
+const std::vector<TextbookProblem>& InfeasibleProblems() {
+  static const std::vector<TextbookProblem> all = MakeInfeasible();
+  return all;
 }
 
 }  // namespace vmech::testing

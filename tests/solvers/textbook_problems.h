@@ -44,7 +44,7 @@ struct TextbookProblem {
 const std::vector<TextbookProblem>& TextbookProblems();
 const TextbookProblem& FindProblem(const std::string& name);
 
-/// Constraints that no point meets: the unit circle and the line x = 3.
-std::unique_ptr<ConstrainedLeastSquares> InfeasibleProblem();
+/// Problems whose constraints no point meets; their `solution` is empty.
+const std::vector<TextbookProblem>& InfeasibleProblems();
 
 }  // namespace vmech::testing
