@@ -18,6 +18,7 @@ enum Sense : std::uint32_t {
   kSensesGripper = 1u << 3,        ///< gripper_opening
   kSensesAppliedWrench = 1u << 4,  ///< F_Ho_D of the period before
   kSensesButtons = 1u << 5,        ///< buttons
+  kSensesEcho = 1u << 6,           ///< command_echo
 };
 
 /// The mechanics of a handle along its weakest direction, for translations in N, m, kg and for

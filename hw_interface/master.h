@@ -37,9 +37,10 @@ struct MasterState {
   std::int64_t host_time_ns = 0;    ///< the caller's clock at the read
   std::uint32_t valid = 0;          ///< bits of Sense
   std::uint32_t buttons = 0;
-  bool dead_man = false;             ///< held by the hand; true where there is no such switch
-  bool emergency_stop = false;       ///< pressed
-  std::uint64_t command_echo = 0;    ///< sequence of the command at work during the last period
+  bool dead_man = false;        ///< held by the hand; true where there is no such switch
+  bool emergency_stop = false;  ///< pressed
+  /// Sequence of the command at work during the period before this sample; 0 if there was none.
+  std::uint64_t command_echo = 0;
   Posed X_DH;                        ///< measured pose of the handle
   Vector6d V_DH = Vector6d::Zero();  ///< [v; w] of Ho and H, axes of D
   /// What the device exerted on the hand during the period before this sample.

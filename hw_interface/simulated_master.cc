@@ -61,7 +61,7 @@ DeviceInfo SimulatedMaster::OnConfigure() {
   info.name = "simulated " + arm_.description().tree.mechanism.name;
   info.period = options_.period;
   info.delay = options_.delay_periods * options_.period;
-  info.senses = kSensesPose | kSensesJoints | kSensesGripper | kSensesAppliedWrench;
+  info.senses = kSensesPose | kSensesJoints | kSensesGripper | kSensesAppliedWrench | kSensesEcho;
   info.takes_wrench = info.takes_torque = true;
   info.arm = arm_.shared_description();
   sensed_.SetPosture(arm_.description().posture.data());
@@ -143,8 +143,8 @@ void SimulatedMaster::AdvancePeriod() noexcept {
 void SimulatedMaster::TakeCommand() noexcept {
   current_ = pipeline_[options_.delay_periods];
   std::move_backward(pipeline_.begin(), pipeline_.end() - 1, pipeline_.end());
-  if (start_ns_ + periods_ * period_ns_ > current_.valid_until_ns)
-    current_.mode = CommandMode::kZero;
+  const bool expired = start_ns_ + periods_ * period_ns_ > current_.valid_until_ns;
+  if (expired) current_ = MasterCommand{};
 }
 
 /// Gravity compensation and the command, in the direction asked for and within the limits.

@@ -1,0 +1,63 @@
+#pragma once
+
+#include "vmech/hw_interface/device_info.h"
+
+namespace vmech {
+
+struct PassivityOptions {
+  bool enabled = true;  ///< false: the energy is observed, the wrench left alone
+  /// Dissipation that may be kept as credit [J], in [0, 10]. Without a limit a long smooth motion
+  /// would pay for a later instability. Raise it if the controller acts in sound motions.
+  double credit = 2e-3;
+  /// Lever that weighs rotations against translations [m], in [0.001, 10].
+  double lever = 0.1;
+  /// Debt at which nothing but damping is left of the wrench [J], in [1e-4, 100].
+  double largest_debt = 0.1;
+
+  /// @throws std::invalid_argument naming field, value and range.
+  void Validate() const;
+};
+
+/// Time-domain passivity observer and controller at the handle [Hannaford & Ryu 2002]. The hand may
+/// get back what it has given and no more:
+///
+///   E_k = E_k-1 - F_k-1 . dx_k + b |dx_k|^2 / T - (S_k - S_k-1)  >= 0,
+///
+/// dx_k = x_k - x_k-1 the measured motion, F the wrench at work meanwhile, b the handle's own
+/// damping, which pays for what sampling makes of a stiff spring, S the energy that the virtual
+/// mechanism says it stores (kinetic, potential, springs; constant if unknown). While E < 0 the
+/// wrench fades with the debt, loses its part along the motion that would drive the hand, and gains
+/// damping
+///
+///   F <- (1 + E/E_largest) F - max(0, F'V/V'WV) W V - alpha W V,   W = diag(1, lever^2),
+///
+/// alpha = -E / (T V'WV), at most what the handle's mass takes without being thrown back: m / (2 T
+/// + 4 delay).
+class PassivityController {
+ public:
+  /// @throws std::invalid_argument as Validate.
+  PassivityController(const PassivityOptions& options, const DeviceInfo& info);
+
+  /// Forgets the energy; the next stored energy is the new zero.
+  void Reset() noexcept;
+  /// What happened in the `elapsed` [s] > 0 since the last sample: the wrench at work, the handle's
+  /// displacement dX = [dp; dr], the virtual side's stored energy now.
+  void Observe(const Vector6d& F_Ho_D, const Vector6d& dX, double elapsed,
+               double stored_energy) noexcept;
+  /// The wrench that keeps the peace for the next period; `V` [v; w] the handle's measured twist.
+  Vector6d Control(const Vector6d& F_Ho_D, const Vector6d& V) const noexcept;
+
+  double energy() const noexcept { return energy_; }  ///< E [J], at most the credit
+
+ private:
+  PassivityOptions options_;
+  double period_;
+  double max_damping_;  // alpha [N s/m]
+  Vector6d weight_;
+  Vector6d own_damping_;  // b
+  double energy_ = 0;
+  double stored_ = 0;
+  bool knows_stored_ = false;
+};
+
+}  // namespace vmech

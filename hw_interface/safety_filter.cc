@@ -1,0 +1,232 @@
+#include "vmech/hw_interface/safety_filter.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "vmech/hw_interface/check_range.h"
+#include "vmech/kinematics/follow_hand.h"
+
+namespace vmech {
+namespace {
+
+bool IsLatched(ForceOff cause) {
+  return cause >= ForceOff::kEmergencyStop;
+}
+
+bool IsFinite(const MasterState& state) {
+  return state.X_DH.p.allFinite() && state.X_DH.R.allFinite();
+}
+
+SafetyOptions Completed(SafetyOptions options, const DeviceInfo& info) {
+  options.Validate();
+  const auto complete = [](double* option, double device) {
+    if (*option == 0) *option = device;
+  };
+  complete(&options.max_force, info.linear.peak);
+  complete(&options.max_moment, info.angular.peak);
+  complete(&options.max_speed, info.linear.max_speed);
+  complete(&options.max_angular_speed, info.angular.max_speed);
+  CheckRange("safety of '" + info.name + "'", "max_force", options.max_force, 1e-6, 1e4);
+  CheckRange("safety of '" + info.name + "'", "max_moment", options.max_moment, 0, 1e3);
+  return options;
+}
+
+/// The factor that brings a pair of vectors within a pair of lengths; at most 1.
+double Shrink(const Vector6d& F, double force, double moment) {
+  const double f = F.head<3>().norm();
+  const double m = F.tail<3>().norm();
+  double scale = 1;
+  if (f > force) scale = force / f;
+  if (m > moment) scale = std::min(scale, moment / m);
+  return scale;
+}
+
+}  // namespace
+
+void SafetyOptions::Validate() const {
+  CheckRange("safety", "soft_start", soft_start, 0, 10);
+  CheckRange("safety", "hold_periods", hold_periods, 0, 1000);
+  CheckRange("safety", "max_force", max_force, 0, 1e4);
+  CheckRange("safety", "max_moment", max_moment, 0, 1e3);
+  CheckRange("safety", "force_slew", force_slew, 1, 1e7);
+  CheckRange("safety", "moment_slew", moment_slew, 0.1, 1e6);
+  CheckRange("safety", "max_speed", max_speed, 0, 100);
+  CheckRange("safety", "max_angular_speed", max_angular_speed, 0, 1000);
+  CheckRange("safety", "energy_trip", energy_trip, 1e-4, 100);
+  passivity.Validate();
+}
+
+SafetyFilter::SafetyFilter(const SafetyOptions& options, const DeviceInfo& info)
+    : options_(Completed(options, info)),
+      period_(info.period),
+      delay_(info.delay),
+      passivity_(options.passivity, info) {
+  sent_.fill(Vector6d::Zero());
+}
+
+void SafetyFilter::Restart() noexcept {
+  opened_for_ = 0;
+  last_.setZero();
+  passivity_.Reset();
+}
+
+void SafetyFilter::Rearm() noexcept {
+  latched_ = ForceOff::kNone;
+  smooth_V_.setZero();
+  Restart();
+}
+
+SafetyOutput SafetyFilter::Apply(const SafetyInput& input) noexcept {
+  SafetyOutput out;
+  out.sequence = ++counters_.ticks;
+  sent_[out.sequence % kMemory].setZero();
+  out.off = Gate(input);
+  if (out.off == ForceOff::kNone) {
+    if (!open_) Restart();
+    Observe(input);
+    out.off = Trip();
+  }
+  if (IsLatched(out.off) && latched_ == ForceOff::kNone) {
+    latched_ = out.off;
+    ++counters_.trips;
+  }
+  open_ = out.off == ForceOff::kNone;
+  out.energy = passivity_.energy();
+  if (!open_) {
+    ++counters_.off;
+    last_.setZero();
+    return out;
+  }
+  out.F_Ho_D = input.F_Ho_D;
+  Ramp(&out);
+  Damp(&out);
+  Clamp(&out);
+  Slew(&out);
+  for (int i = 0; i < kSafetyStages; ++i) counters_.stages[i] += (out.stages >> i) & 1;
+  sent_[out.sequence % kMemory] = last_ = out.F_Ho_D;
+  return out;
+}
+
+ForceOff SafetyFilter::Gate(const SafetyInput& input) noexcept {
+  missing_ = input.io == IoStatus::kNoNewData ? missing_ + 1 : 0;
+  if (latched_ != ForceOff::kNone) return latched_;
+  if (input.state->emergency_stop) return ForceOff::kEmergencyStop;
+  if (input.lifecycle != Lifecycle::kActive && input.lifecycle != Lifecycle::kFault) {
+    has_pose_ = false;
+    return ForceOff::kNotActive;
+  }
+  if (input.io == IoStatus::kLinkLost) return ForceOff::kLinkLost;
+  if (input.io == IoStatus::kDeviceFault || input.lifecycle == Lifecycle::kFault) {
+    return ForceOff::kDeviceFault;
+  }
+  if (!input.F_Ho_D.allFinite() || !IsFinite(*input.state) || !std::isfinite(input.stored_energy)) {
+    return ForceOff::kNonFinite;
+  }
+  if (missing_ > options_.hold_periods) return ForceOff::kStale;
+  if (!input.state->dead_man) return ForceOff::kDeadMan;
+  return ForceOff::kNone;
+}
+
+/// Displacement, twist and energy since the last sample.
+void SafetyFilter::Observe(const SafetyInput& input) noexcept {
+  const MasterState& state = *input.state;
+  if (!open_) has_pose_ = false;
+  if (has_pose_ && state.sequence == last_sequence_) return;
+  if (has_pose_) {
+    const Vector6d dX = HandError(X_last_, state.X_DH);
+    const double elapsed = static_cast<double>(state.sequence - last_sequence_) * period_;
+    V_ = dX / elapsed;
+    passivity_.Observe(WrenchAtWork(state), dX, elapsed, input.stored_energy);
+    constexpr double kSmoothing = 5e-3;  // [s]: single encoder steps do not trip
+    smooth_V_ += std::min(1.0, elapsed / kSmoothing) * (V_ - smooth_V_);
+  } else {
+    V_.setZero();
+    smooth_V_.setZero();
+    passivity_.Observe(Vector6d::Zero(), Vector6d::Zero(), period_, input.stored_energy);
+  }
+  X_last_ = state.X_DH;
+  last_sequence_ = state.sequence;
+  has_pose_ = true;
+}
+
+Vector6d SafetyFilter::WrenchAtWork(const MasterState& state) const noexcept {
+  if (state.valid & kSensesAppliedWrench) return state.applied_F_Ho_D;
+  const auto delay = static_cast<std::uint64_t>(std::llround(delay_ / period_));
+  const std::uint64_t latest = counters_.ticks - 1;  // this tick's is still to come
+  const std::uint64_t at_work =
+      state.valid & kSensesEcho ? state.command_echo : latest - std::min(latest, delay);
+  if (at_work == 0 || at_work > latest || latest - at_work >= kMemory) return Vector6d::Zero();
+  return sent_[at_work % kMemory];
+}
+
+ForceOff SafetyFilter::Trip() const noexcept {
+  if (smooth_V_.head<3>().norm() > options_.max_speed) return ForceOff::kSpeed;
+  if (smooth_V_.tail<3>().norm() > options_.max_angular_speed) return ForceOff::kSpeed;
+  if (passivity_.energy() < -options_.energy_trip) return ForceOff::kEnergy;
+  return ForceOff::kNone;
+}
+
+void SafetyFilter::Ramp(SafetyOutput* out) noexcept {
+  if (opened_for_ < options_.soft_start) {
+    out->F_Ho_D *= opened_for_ / options_.soft_start;
+    out->stages |= kRamped;
+  }
+  opened_for_ += period_;
+}
+
+void SafetyFilter::Damp(SafetyOutput* out) noexcept {
+  const Vector6d damped = passivity_.Control(out->F_Ho_D, V_);
+  if (damped == out->F_Ho_D) return;
+  out->F_Ho_D = damped;
+  out->stages |= kDamped;
+}
+
+void SafetyFilter::Clamp(SafetyOutput* out) noexcept {
+  const double scale = Shrink(out->F_Ho_D, options_.max_force, options_.max_moment);
+  if (scale == 1) return;
+  out->F_Ho_D *= scale;
+  out->stages |= kClamped;
+}
+
+void SafetyFilter::Slew(SafetyOutput* out) noexcept {
+  const Vector6d change = out->F_Ho_D - last_;
+  const double scale =
+      Shrink(change, options_.force_slew * period_, options_.moment_slew * period_);
+  if (scale == 1) return;
+  out->F_Ho_D = last_ + scale * change;
+  out->stages |= kSlewed;
+}
+
+double SafetyFilter::EnergyBound() const noexcept {
+  const double power = options_.max_force * options_.max_speed +
+                       options_.max_moment * std::min(options_.max_angular_speed, 1e3);
+  return options_.energy_trip + power * ((2 + options_.hold_periods) * period_ + delay_);
+}
+
+const char* NameOf(ForceOff cause) noexcept {
+  switch (cause) {
+    case ForceOff::kNone:
+      return "none";
+    case ForceOff::kNotActive:
+      return "not active";
+    case ForceOff::kDeadMan:
+      return "dead man";
+    case ForceOff::kStale:
+      return "stale";
+    case ForceOff::kEmergencyStop:
+      return "emergency stop";
+    case ForceOff::kLinkLost:
+      return "link lost";
+    case ForceOff::kDeviceFault:
+      return "device fault";
+    case ForceOff::kNonFinite:
+      return "not a number";
+    case ForceOff::kSpeed:
+      return "too fast";
+    case ForceOff::kEnergy:
+      return "energy";
+  }
+  return "";
+}
+
+}  // namespace vmech
