@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace vmech {
 
@@ -28,5 +29,14 @@ struct LoadsArguments {
   int threads = 0;  ///< 0: all processors
 };
 int RunLoads(const LoadsArguments& arguments);
+
+struct CompareArguments {
+  std::filesystem::path suite;
+  std::vector<std::string> solvers;  ///< by name; empty: all
+  std::filesystem::path out;         ///< empty: "<suite>-compare" in the current folder
+  bool quiet = false;
+  int jobs = 0;  ///< processes; 0: as many as there are processors
+};
+int RunCompare(const CompareArguments& arguments);
 
 }  // namespace vmech

@@ -35,6 +35,17 @@ constexpr const char* kLoadsHelp =
     "  summary.json   the figures that matter, for programs\n"
     "  report.html    all of it to read and hand on";
 
+constexpr const char* kCompareHelp =
+    "Solves every problem of a suite by every solver, on all processors, and writes what came of "
+    "it:\n"
+    "  results.csv    one row per problem and solver\n"
+    "  summary.json   shares of success and times, for programs\n"
+    "  report.html    tables, performance profiles, accuracy, every failure with its reason\n"
+    "  rows.jsonl     the rows as they came in. Stopped at any time, the same command goes on "
+    "from\n"
+    "                 here; with more solvers it adds theirs.\n"
+    "mpirun -n 4 vmech compare ... gives the same rows.";
+
 int Run(int argc, char** argv) {
   CLI::App app{"vmech: mechanisms, their motion, the loads on their joints, and bearings for them",
                "vmech"};
@@ -63,12 +74,31 @@ int Run(int argc, char** argv) {
       ->capture_default_str();
   loads_command->add_flag("-q,--quiet", loads.quiet, "print nothing but errors");
 
+  vmech::CompareArguments compare;
+  CLI::App* compare_command = app.add_subcommand("compare", kCompareHelp);
+  compare_command->add_option("SUITE", compare.suite, "suite file, YAML or JSON")
+      ->required()
+      ->type_name("FILE");
+  compare_command->add_option("--solvers", compare.solvers, "names, by commas (default: all)")
+      ->delimiter(',')
+      ->type_name("NAMES");
+  compare_command
+      ->add_option("--out", compare.out,
+                   "folder for the results (default: <suite>-compare in this folder)")
+      ->type_name("DIR");
+  compare_command->add_option("--jobs", compare.jobs, "processes; 0 for one per processor")
+      ->check(CLI::Range(0, 256, "0..256"))
+      ->capture_default_str();
+  compare_command->add_flag("-q,--quiet", compare.quiet, "print nothing but errors");
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? vmech::kSuccess : vmech::kBadUsage;
   }
-  const int code = check_command->parsed() ? RunCheck(check) : RunLoads(loads);
+  const int code = check_command->parsed()   ? RunCheck(check)
+                   : loads_command->parsed() ? RunLoads(loads)
+                                             : RunCompare(compare);
   if (std::fflush(stdout) != 0) throw vmech::FileErrors("standard output", "cannot be written");
   return code;
 }

@@ -42,6 +42,11 @@ def studies():
     return sorted(EXAMPLES.glob("*-study.yaml"))
 
 
+def suites():
+    return [path for path in EXAMPLES.glob("*.yaml")
+            if "\nvmech_suite:" in "\n" + path.read_text(encoding="utf-8")]
+
+
 def read_csv(path):
     with open(path, newline="", encoding="utf-8") as file:
         return list(csv.reader(file))
@@ -103,7 +108,7 @@ class Help(unittest.TestCase):
 class Check(InFolder):
     def test_tells_mobility_of_every_example(self):
         mechanisms = {path.stem for path in EXAMPLES.glob("*.yaml")}
-        mechanisms -= {path.stem for path in studies()}
+        mechanisms -= {path.stem for path in [*studies(), *suites()]}
         self.assertEqual(mechanisms, set(MOBILITY))
         for name, mobility in MOBILITY.items():
             with self.subTest(name=name):

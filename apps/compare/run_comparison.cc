@@ -1,0 +1,144 @@
+#include "vmech/apps/compare/run_comparison.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+
+#include "vmech/apps/compare/result_text.h"
+#include "vmech/comparison/random.h"
+#include "vmech/comparison/solve_problem.h"
+#include "vmech/comparison/target_maker.h"
+
+namespace vmech {
+namespace {
+
+/// A problem and the solvers that are still to solve it.
+struct Task {
+  ProblemId problem;
+  std::vector<Backend> solvers;
+};
+
+std::string TextOf(const Task& task) {
+  std::string text =
+      fmt::format("{} {} {}", task.problem.mechanism, task.problem.block, task.problem.index);
+  for (const Backend solver : task.solvers) text += fmt::format(" {}", NameOf(solver));
+  return text;
+}
+
+Task TaskFrom(const std::string& text) {
+  Task task;
+  std::istringstream words(text);
+  words >> task.problem.mechanism >> task.problem.block >> task.problem.index;
+  for (std::string name; words >> name;) task.solvers.push_back(BackendFromName(name).value());
+  return task;
+}
+
+uint64_t SeedOfProblem(const Suite& suite, const ProblemId& id) {
+  return SeedOf(suite.seed, {static_cast<uint64_t>(id.mechanism), static_cast<uint64_t>(id.block),
+                             static_cast<uint64_t>(id.index)});
+}
+
+bool Before(const Result& a, const Result& b) {
+  return std::pair(a.problem, a.solver) < std::pair(b.problem, b.solver);
+}
+
+/// Collects results and knows what is missing.
+class Ledger {
+ public:
+  Ledger(const Suite& suite, const std::vector<Backend>& solvers, Journal* journal)
+      : journal_(journal) {
+    std::set<std::pair<ProblemId, Backend>> there;
+    for (const Result& result : journal->found()) {
+      if (std::find(solvers.begin(), solvers.end(), result.solver) == solvers.end()) continue;
+      there.insert({result.problem, result.solver});
+      results_.push_back(result);
+    }
+    for (const ProblemId& problem : ProblemsOf(suite)) {
+      Task task{problem, {}};
+      for (const Backend solver : solvers) {
+        if (!there.contains({problem, solver})) task.solvers.push_back(solver);
+      }
+      if (!task.solvers.empty()) open_.push_back(task);
+      all_ += solvers.size();
+    }
+  }
+
+  std::vector<std::string> Tasks() const {
+    std::vector<std::string> texts;
+    for (const Task& task : open_) texts.push_back(TextOf(task));
+    return texts;
+  }
+
+  void Add(size_t task, const Result& result) {
+    journal_->Append(result);
+    results_.push_back(result);
+    std::erase(open_[task].solvers, result.solver);
+  }
+
+  /// A solver that took its process down has failed; the others go on.
+  std::optional<std::string> Lost(size_t index, const std::string& reason) {
+    Task& task = open_[index];
+    if (task.solvers.empty()) return {};
+    Result result;
+    result.problem = task.problem;
+    result.solver = task.solvers.front();
+    result.verdict = Verdict::kFailed;
+    result.message = reason;
+    Add(index, result);
+    if (task.solvers.empty()) return {};
+    return TextOf(task);
+  }
+
+  size_t done() const { return results_.size(); }
+  size_t all() const { return all_; }
+
+  std::vector<Result> Sorted() && {
+    std::sort(results_.begin(), results_.end(), Before);
+    return std::move(results_);
+  }
+
+ private:
+  Journal* journal_;
+  std::vector<Task> open_;
+  std::vector<Result> results_;
+  size_t all_ = 0;
+};
+
+}  // namespace
+
+Work ComparisonWork(const Suite& suite) {
+  auto subjects = std::make_shared<std::map<int, Subject>>();
+  return [&suite, subjects](const std::string& text, const Emit& emit) {
+    const Task task = TaskFrom(text);
+    const int m = task.problem.mechanism;
+    Subject& subject = subjects->try_emplace(m, suite.mechanisms[m]).first->second;
+    const Problem problem =
+        MakeProblem(&subject, suite.blocks[task.problem.block], SeedOfProblem(suite, task.problem));
+    for (const Backend solver : task.solvers) {
+      emit(ToLine(SolveProblem(suite, task.problem, problem, &subject, solver)));
+    }
+  };
+}
+
+std::vector<Result> RunComparison(const Suite& suite, const std::vector<Backend>& solvers,
+                                  const Spread& spread, Journal* journal,
+                                  const std::function<void(size_t done, size_t all)>& progress) {
+  Ledger ledger(suite, solvers, journal);
+  Foreman foreman;
+  foreman.answer = [&](size_t task, const std::string& line) {
+    const std::optional<Result> result = ResultFromLine(line);
+    if (!result) throw std::logic_error("a worker answered what is not a result: " + line);
+    ledger.Add(task, *result);
+    progress(ledger.done(), ledger.all());
+  };
+  foreman.lost = [&](size_t task, const std::string& reason) { return ledger.Lost(task, reason); };
+  spread(ledger.Tasks(), foreman);
+  return std::move(ledger).Sorted();
+}
+
+}  // namespace vmech

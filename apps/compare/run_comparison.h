@@ -1,0 +1,26 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "vmech/apps/compare/crew.h"
+#include "vmech/apps/compare/journal.h"
+#include "vmech/comparison/result.h"
+
+namespace vmech {
+
+/// How tasks are spread: RunInProcesses with a number of jobs, or an MpiSession.
+using Spread = std::function<void(const std::vector<std::string>& tasks, const Foreman& foreman)>;
+
+/// What a worker does for a comparison: solves the problem of a task by the solvers named with it.
+Work ComparisonWork(const Suite& suite);
+
+/// Everything of a suite by these solvers, in the order of problems and of kAllBackends; what the
+/// journal has is not computed again. `progress` hears of rows done and of all.
+/// @throws what the journal throws.
+std::vector<Result> RunComparison(const Suite& suite, const std::vector<Backend>& solvers,
+                                  const Spread& spread, Journal* journal,
+                                  const std::function<void(size_t done, size_t all)>& progress);
+
+}  // namespace vmech

@@ -1,0 +1,207 @@
+#include "vmech/apps/compare/suite_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "vmech/apps/compare/digest.h"
+#include "vmech/apps/read_motion.h"
+#include "vmech/mechanisms/read_link.h"
+#include "vmech/mechanisms/reader.h"
+#include "vmech/mechanisms/units.h"
+
+namespace vmech {
+namespace {
+
+constexpr int kMaxCount = 1'000'000;
+constexpr int kMaxSteps = 100'000;
+
+void CheckVersion(const Node& version) {
+  const std::string text = version.Text(std::string(kSuiteFormat));
+  if (text == kSuiteFormat) return;
+  version.Error(fmt::format("this is format {}; only {} can be read", Quoted(text), kSuiteFormat));
+}
+
+void ReadStopping(const Node& node, StoppingRule* rule) {
+  if (!node) return;
+  if (!node.CheckKeys({}, {"constraint_tolerance", "optimality_tolerance", "max_iterations"})) {
+    return;
+  }
+  rule->constraint_tolerance = node["constraint_tolerance"].Positive(rule->constraint_tolerance);
+  rule->optimality_tolerance = node["optimality_tolerance"].Positive(rule->optimality_tolerance);
+  rule->max_iterations = node["max_iterations"].Integer(rule->max_iterations, 1, 1'000'000);
+}
+
+/// Keys that only some kinds of targets know.
+void CheckKeysOfKind(const Node& node, const TargetBlock& block) {
+  const bool unreachable = block.kind == TargetKind::kUnreachable;
+  const bool singular = block.kind == TargetKind::kSingular;
+  const std::pair<const char*, bool> keys[] = {
+      {"start", !block.is_path()}, {"start_distance", !block.is_path()}, {"offset", unreachable},
+      {"closeness", singular},     {"steps", block.is_path()},           {"step", block.is_path()},
+  };
+  for (const auto& [key, used] : keys) {
+    const Node given = node[key];
+    if (given && !used) {
+      given.KeyError(fmt::format("targets of kind '{}' have no '{}'", NameOf(block.kind), key));
+    }
+  }
+  if (block.start == StartKind::kFar && node["start_distance"]) {
+    node["start_distance"].KeyError("used with 'start: near' only");
+  }
+}
+
+TargetBlock ReadBlock(const Node& node) {
+  TargetBlock block;
+  block.name = node.key();
+  node.CheckName();
+  if (!node.CheckKeys({"kind", "count"},
+                      {"start", "start_distance", "offset", "closeness", "steps", "step"})) {
+    return block;
+  }
+  block.kind =
+      node["kind"].Word<TargetKind>({{NameOf(TargetKind::kReachable), TargetKind::kReachable},
+                                     {NameOf(TargetKind::kUnreachable), TargetKind::kUnreachable},
+                                     {NameOf(TargetKind::kSingular), TargetKind::kSingular},
+                                     {NameOf(TargetKind::kDeadCentre), TargetKind::kDeadCentre},
+                                     {NameOf(TargetKind::kTracking), TargetKind::kTracking}},
+                                    TargetKind::kReachable);
+  block.start = node["start"].Word<StartKind>(
+      {{"near", StartKind::kNear}, {"far", StartKind::kFar}}, StartKind::kNear);
+  block.count = node["count"].Integer(1, 1, kMaxCount);
+  block.start_distance = node["start_distance"].Positive(block.start_distance);
+  block.offset = node["offset"].Positive(block.offset);
+  block.closeness = node["closeness"].Positive(block.closeness);
+  block.steps = node["steps"].Integer(block.steps, 2, kMaxSteps);
+  block.step = node["step"].Positive(block.step);
+  CheckKeysOfKind(node, block);
+  return block;
+}
+
+/// A grasp of the mechanism by its name, or one of the suite's own.
+Grasp ReadSuiteGrasp(const Node& node, const Units& units, const Mechanism& mechanism) {
+  Grasp grasp;
+  if (node.kind() == Node::Kind::kScalar) {
+    const int index = FindPart(node, "grasp", mechanism.grasps);
+    return index < 0 ? grasp : mechanism.grasps[index];
+  }
+  if (!node.CheckKeys({"link"}, {"origin", "z", "x", "y", "kind"})) return grasp;
+  grasp.link = FindPart(node["link"], "link", mechanism.links);
+  grasp.X_LG = ReadFrame(node, units);
+  grasp.kind = node["kind"].Word<GraspKind>(
+      {{"rigid", GraspKind::kRigid}, {"point", GraspKind::kPoint}}, GraspKind::kRigid);
+  if (grasp.link == mechanism.ground) node["link"].Error("the ground does not move");
+  return grasp;
+}
+
+std::vector<int> ReadBlocksOf(const Node& node, const std::vector<TargetBlock>& blocks) {
+  std::vector<int> chosen;
+  if (!node) {
+    for (size_t i = 0; i < blocks.size(); ++i) chosen.push_back(static_cast<int>(i));
+    return chosen;
+  }
+  for (const Node& entry : node.List()) {
+    const int block = FindPart(entry, "block of targets", blocks);
+    if (block < 0) continue;
+    if (std::find(chosen.begin(), chosen.end(), block) != chosen.end()) {
+      entry.Error("this block is already named");
+    }
+    chosen.push_back(block);
+  }
+  std::sort(chosen.begin(), chosen.end());
+  return chosen;
+}
+
+class SuiteReader {
+ public:
+  SuiteReader(std::string_view text, const std::filesystem::path& path)
+      : document_(text, path.string()), folder_(path.parent_path()) {
+    suite_.path = path;
+    suite_.digest = DigestOf(text);
+  }
+
+  Suite Read() {
+    const Node root = document_.root();
+    if (root.CheckKeys({"vmech_suite", "targets", "mechanisms"},
+                       {"name", "description", "units", "seed", "repetitions", "stopping",
+                        "reach_tolerance"})) {
+      CheckVersion(root["vmech_suite"]);
+      ReadHead(root);
+      for (const Node& entry : root["targets"].Map()) suite_.blocks.push_back(ReadBlock(entry));
+      if (document_.ok() && suite_.blocks.empty()) root["targets"].Error("name at least one block");
+      const Units units = ReadUnits(root["units"]);
+      for (const Node& entry : root["mechanisms"].Map()) ReadOne(entry, units);
+      if (document_.ok() && suite_.mechanisms.empty()) {
+        root["mechanisms"].Error("name at least one mechanism");
+      }
+    }
+    document_.ThrowErrors();
+    return std::move(suite_);
+  }
+
+ private:
+  void ReadHead(const Node& root) {
+    suite_.name = root["name"].Text(suite_.path.stem().string());
+    suite_.description = root["description"].Text();
+    suite_.seed =
+        static_cast<uint64_t>(root["seed"].Integer(1, 0, std::numeric_limits<int>::max()));
+    suite_.repetitions = root["repetitions"].Integer(suite_.repetitions, 1, 1000);
+    suite_.reach_tolerance = root["reach_tolerance"].Positive(suite_.reach_tolerance);
+    ReadStopping(root["stopping"], &suite_.stopping);
+    try {
+      suite_.stopping.Validate();
+    } catch (const std::invalid_argument& defect) {
+      root["stopping"].Error(defect.what());
+    }
+  }
+
+  void ReadOne(const Node& node, const Units& units) {
+    node.CheckName();
+    if (!node.CheckKeys({"file", "grasp"}, {"targets"})) return;
+    SuiteMechanism entry;
+    entry.name = node.key();
+    entry.blocks = ReadBlocksOf(node["targets"], suite_.blocks);
+    if (!ReadFile(node["file"], &entry.mechanism)) return;
+    entry.grasp = ReadSuiteGrasp(node["grasp"], units, entry.mechanism);
+    suite_.mechanisms.push_back(std::move(entry));
+  }
+
+  /// What is wrong with the mechanism joins what is wrong with the suite, once.
+  bool ReadFile(const Node& node, Mechanism* mechanism) {
+    const std::string name = node.Text();
+    if (name.empty()) return false;
+    try {
+      const std::filesystem::path path = folder_ / name;
+      const std::string text = ReadTextFile(path);
+      suite_.digest = DigestOf(text, suite_.digest);
+      *mechanism = ParseMechanism(text, path.string());
+      return true;
+    } catch (const FileErrors& errors) {
+      const bool seen = std::find(faulty_.begin(), faulty_.end(), name) != faulty_.end();
+      faulty_.push_back(name);
+      if (seen) return false;
+      for (const FileError& error : errors.errors()) document_.Report(error);
+    }
+    return false;
+  }
+
+  Document document_;
+  std::filesystem::path folder_;
+  Suite suite_;
+  std::vector<std::string> faulty_;
+};
+
+}  // namespace
+
+Suite ReadSuite(const std::filesystem::path& path) {
+  return ParseSuite(ReadTextFile(path), path);
+}
+
+Suite ParseSuite(std::string_view text, const std::filesystem::path& path) {
+  return SuiteReader(text, path).Read();
+}
+
+}  // namespace vmech

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <vector>
+
+#include "vmech/comparison/random.h"
+#include "vmech/kinematics/kinematic_tree.h"
+#include "vmech/solvers/constrained_least_squares.h"
+
+namespace vmech {
+
+/// How far two configurations are apart: the norm of the differences of all coordinates of the
+/// tree, in radians (whole turns do not count) and characteristic lengths.
+double ConfigurationDistance(const KinematicTree& tree, const VectorXd& a, const VectorXd& b);
+
+/// The free motions at a closed configuration: an orthonormal basis of the null space of the loop
+/// Jacobian [nv, mobility], in radians and characteristic lengths.
+MatrixXd FreeMotionBasis(const KinematicTree& tree, const VectorXd& q);
+
+/// Characteristic lengths or radians to the units of each velocity [nv].
+VectorXd TangentScale(const KinematicTree& tree);
+
+/// A walk over closed configurations within the joint limits, on one branch: small steps along the
+/// free motions, each closed again by Assemble.
+class ClosedWalk {
+ public:
+  /// q must be closed. The first direction is random.
+  ClosedWalk(const KinematicTree& tree, const std::vector<Bound>& bounds, VectorXd q,
+             PortableRandom* random);
+
+  /// Goes on by `size`, turning by about `turn` [rad] if there is more than one freedom. Where the
+  /// way ahead is barred by a limit it takes another. False, and no step, if there is none.
+  bool Step(double size, double turn);
+
+  const VectorXd& q() const { return q_; }
+  /// The last step, of length 1 [nv]; its sign follows the walk.
+  const VectorXd& direction() const { return direction_; }
+
+ private:
+  bool TryStep(double size, const VectorXd& wish);
+  bool WithinLimits(const VectorXd& q) const;
+
+  const KinematicTree& tree_;
+  const std::vector<Bound>& bounds_;
+  VectorXd scale_;
+  VectorXd q_, direction_;
+  PortableRandom* random_;
+};
+
+}  // namespace vmech

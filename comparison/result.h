@@ -1,0 +1,70 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vmech/comparison/suite.h"
+#include "vmech/solvers/backend.h"
+
+namespace vmech {
+
+/// What became of a problem in the hands of a solver, judged at the returned configuration.
+enum class Verdict {
+  kSolved,        ///< loops closed and the target reached; of a path: every target, without a jump
+  kUnreachable,   ///< loops closed, the nearest pose to a target that is out of reach
+  kLocalMinimum,  ///< a constrained minimum, but the target could have been reached
+  kSaddle,        ///< stationary, loops closed, but not a minimum
+  kBiased,        ///< loops open by the bias of a penalty
+  kLost,          ///< a path: some targets not reached
+  kJumped,        ///< a path: every target reached, but on another branch from one to the next
+  kInfeasible,    ///< stopped where the loops cannot be closed nearby
+  kIterationLimit,  ///< as SolveStatus, and so are the following
+  kStalled,
+  kFailed,
+  kUnsuitable,
+  kUnavailable,
+  kNotPosed,  ///< the mechanism has no problem of this kind
+};
+
+/// Which of the configurations that meet a target was found.
+enum class Branch {
+  kUnknown,  ///< nothing was found
+  kOwn,      ///< that from which the target was made
+  kOther,    ///< another one
+  kFree,     ///< the grasp does not tell the configuration
+};
+
+std::string_view NameOf(Verdict verdict);
+std::string_view NameOf(Branch branch);
+Verdict VerdictFromName(std::string_view name);  ///< @throws std::invalid_argument
+Branch BranchFromName(std::string_view name);    ///< @throws std::invalid_argument
+
+/// One problem and one solver. Of a path, counts and time are sums, errors the largest.
+struct Result {
+  ProblemId problem;
+  Backend solver = Backend::kPenalty;
+  Verdict verdict = Verdict::kFailed;
+  std::string message;
+  int targets = 1;  ///< of a path; else 1
+  int reached = 0;  ///< of these
+  int jumps = 0;    ///< of a path: to another branch from one target to the next
+  int iterations = 0;
+  int evaluations = 0;
+  int jacobian_evaluations = 0;
+  double time = 0;         ///< median of the repetitions [s]
+  double e1_position = 0;  ///< from the grasp to the hand [m]
+  double e1_rotation = 0;  ///< [rad]; 0 for a point grasp
+  double e2 = 0;           ///< largest loop error [characteristic lengths, rad]
+  double kkt = 0;          ///< Summary::kkt_error
+  Branch branch = Branch::kUnknown;
+  double distance = 0;  ///< from the target's own configuration [rad, characteristic lengths]
+};
+
+/// True if a solver did what the kind of problem asks for: reached the target, or came to the
+/// nearest pose where it is out of reach.
+bool Succeeded(const Result& result, TargetKind kind);
+/// False where nothing can be held against the solver: no such problem, or no such solver.
+bool Counts(const Result& result);
+
+}  // namespace vmech

@@ -1,0 +1,231 @@
+#include "vmech/comparison/solve_problem.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "vmech/comparison/closed_walk.h"
+#include "vmech/kinematics/linear_algebra.h"
+#include "vmech/kinematics/mobility.h"
+
+namespace vmech {
+namespace {
+
+// Configurations that are nearer than this are the same: far above what a tolerance on e1 leaves at
+// a pose that is nearly singular, far below the distance of two branches.
+constexpr double kSameConfiguration = 1e-3;
+constexpr double kJump = 10;  // of a path's own step
+
+Verdict VerdictOf(SolveStatus status) {
+  switch (status) {
+    case SolveStatus::kBiased:
+      return Verdict::kBiased;
+    case SolveStatus::kInfeasible:
+      return Verdict::kInfeasible;
+    case SolveStatus::kIterationLimit:
+      return Verdict::kIterationLimit;
+    case SolveStatus::kUnsuitable:
+      return Verdict::kUnsuitable;
+    case SolveStatus::kUnavailable:
+      return Verdict::kUnavailable;
+    case SolveStatus::kStalled:
+    case SolveStatus::kConverged:
+      return Verdict::kStalled;
+    case SolveStatus::kFailed:
+    case SolveStatus::kNotRun:
+      break;
+  }
+  return Verdict::kFailed;
+}
+
+/// Smallest eigenvalue, over the largest magnitude, of the Hessian of the Lagrangian on the
+/// directions that the constraints and the bounds that carry a multiplier leave free.
+double LeastCurvature(ConstrainedLeastSquares& problem, const Summary& summary) {
+  const ProblemSizes& sizes = problem.sizes();
+  VectorXd r(sizes.residuals);
+  MatrixXd J(sizes.residuals, sizes.tangents), S(sizes.tangents, sizes.tangents);
+  MatrixXd C(sizes.constraints, sizes.tangents);
+  problem.Evaluate(summary.x, &r, &J, nullptr, &C);
+  problem.Curvature(summary.x, summary.multipliers, &S);
+  for (size_t k = 0; k < problem.bounds().size(); ++k) {
+    if (summary.bound_multipliers[k] == 0) continue;
+    C.conservativeResize(C.rows() + 1, Eigen::NoChange);
+    C.bottomRows(1).setZero();
+    C(C.rows() - 1, problem.bounds()[k].tangent) = 1;
+  }
+  const MatrixXd Z = C.rows() == 0 ? MatrixXd(MatrixXd::Identity(sizes.tangents, sizes.tangents))
+                                   : FindNullSpace(C, kRankTolerance).basis;
+  if (Z.cols() == 0) return 0;
+  const MatrixXd H = Z.transpose() * (J.transpose() * J + S) * Z;
+  const VectorXd eigenvalues = Eigen::SelfAdjointEigenSolver<MatrixXd>(H).eigenvalues();
+  return eigenvalues[0] / std::max(eigenvalues.cwiseAbs().maxCoeff(), 1e-300);
+}
+
+/// One solve, its summary and what we measure of it.
+class Judged {
+ public:
+  Judged(const Suite& suite, const Problem& problem, Subject* subject, size_t target)
+      : suite_(suite), problem_(problem), subject_(*subject), target_(target) {}
+
+  const Summary& Solve(Backend solver, const VectorXd& x0) {
+    InverseKinematics& ik = subject_.problem();
+    ik.SetTarget(problem_.targets[target_]);
+    summary_ = vmech::Solve(solver, ik, suite_.stopping, x0);
+    e1_ = ik.HandError(summary_.x);
+    if (ik.grasp().kind == GraspKind::kPoint) e1_.tail<3>().setZero();
+    distance_ = ConfigurationDistance(subject_.tree(), summary_.x, problem_.own[target_]);
+    return summary_;
+  }
+
+  bool feasible() const {
+    return summary_.constraint_norm <= suite_.stopping.constraint_tolerance &&
+           summary_.bound_violation <= suite_.stopping.constraint_tolerance;
+  }
+  bool reached() const {
+    const double off =
+        std::hypot(e1_.head<3>().norm() / subject_.tree().length, e1_.tail<3>().norm());
+    return feasible() && off <= suite_.reach_tolerance;
+  }
+
+  Verdict verdict(TargetKind kind) const {
+    if (reached()) return Verdict::kSolved;
+    if (summary_.status != SolveStatus::kConverged) return VerdictOf(summary_.status);
+    constexpr double kSaddle = -1e-6;
+    if (LeastCurvature(subject_.problem(), summary_) < kSaddle) return Verdict::kSaddle;
+    return kind == TargetKind::kUnreachable ? Verdict::kUnreachable : Verdict::kLocalMinimum;
+  }
+
+  std::string Message(Verdict verdict) const {
+    const std::string off = fmt::format("{:.3g} m and {:.3g} rad off the target",
+                                        e1_.head<3>().norm(), e1_.tail<3>().norm());
+    switch (verdict) {
+      case Verdict::kSolved:
+        return "the target is reached";
+      case Verdict::kUnreachable:
+        return "the nearest pose, " + off;
+      case Verdict::kLocalMinimum:
+        return "a nearest pose of its neighbourhood, " + off;
+      case Verdict::kSaddle:
+        return "stationary but no minimum, " + off;
+      default:
+        return summary_.message;
+    }
+  }
+
+  Branch branch(bool found) const {
+    if (!found) return Branch::kUnknown;
+    if (!problem_.determined) return Branch::kFree;
+    return distance_ <= kSameConfiguration ? Branch::kOwn : Branch::kOther;
+  }
+
+  /// Adds counts and time, keeps the largest errors.
+  void AddTo(Result* result) const {
+    result->iterations += summary_.iterations;
+    result->evaluations += summary_.evaluations;
+    result->jacobian_evaluations += summary_.jacobian_evaluations;
+    result->time += summary_.seconds;
+    result->e1_position = std::max(result->e1_position, e1_.head<3>().norm());
+    result->e1_rotation = std::max(result->e1_rotation, e1_.tail<3>().norm());
+    result->e2 = std::max(result->e2, summary_.constraint_norm);
+    result->kkt = std::max(result->kkt, summary_.kkt_error);
+    result->distance = std::max(result->distance, distance_);
+  }
+
+ private:
+  const Suite& suite_;
+  const Problem& problem_;
+  Subject& subject_;
+  size_t target_;
+  Summary summary_;
+  Vector6d e1_ = Vector6d::Zero();
+  double distance_ = 0;
+};
+
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+void SolvePose(const Suite& suite, TargetKind kind, const Problem& problem, Subject* subject,
+               Result* result) {
+  Judged judged(suite, problem, subject, 0);
+  std::vector<double> times;
+  times.push_back(judged.Solve(result->solver, problem.start).seconds);
+  judged.AddTo(result);
+  result->verdict = judged.verdict(kind);
+  result->message = judged.Message(result->verdict);
+  result->reached = judged.reached() ? 1 : 0;
+  const bool found = result->verdict == Verdict::kSolved || Succeeded(*result, kind);
+  result->branch = judged.branch(found);
+  if (result->verdict != Verdict::kUnavailable) {
+    for (int i = 1; i < suite.repetitions; ++i) {
+      times.push_back(judged.Solve(result->solver, problem.start).seconds);
+    }
+  }
+  result->time = Median(times);
+}
+
+void FollowPath(const Suite& suite, const TargetBlock& block, const Problem& problem,
+                Subject* subject, Result* result) {
+  VectorXd x = problem.start;
+  int since = 1;  // targets since the last one that was reached
+  std::string first_trouble;
+  for (size_t k = 0; k < problem.targets.size(); ++k) {
+    Judged judged(suite, problem, subject, k);
+    const Summary& summary = judged.Solve(result->solver, x);
+    judged.AddTo(result);
+    result->branch = judged.branch(judged.reached());
+    if (summary.status == SolveStatus::kUnavailable) {
+      result->verdict = Verdict::kUnavailable;
+      result->message = summary.message;
+      return;
+    }
+    if (!judged.reached()) {
+      ++since;
+      if (first_trouble.empty()) {
+        const Verdict verdict = judged.verdict(block.kind);
+        first_trouble = fmt::format("; first at target {}: {}: {}", k + 1, NameOf(verdict),
+                                    judged.Message(verdict));
+      }
+      continue;
+    }
+    ++result->reached;
+    if (ConfigurationDistance(subject->tree(), x, summary.x) > kJump * since * block.step) {
+      ++result->jumps;
+    }
+    since = 1;
+    x = summary.x;
+  }
+  const bool all = result->reached == result->targets;
+  result->verdict = !all ? Verdict::kLost : result->jumps > 0 ? Verdict::kJumped : Verdict::kSolved;
+  result->message = fmt::format("{} of {} targets reached, {} jumps{}", result->reached,
+                                result->targets, result->jumps, first_trouble);
+}
+
+}  // namespace
+
+Result SolveProblem(const Suite& suite, const ProblemId& id, const Problem& problem,
+                    Subject* subject, Backend solver) {
+  Result result;
+  result.problem = id;
+  result.solver = solver;
+  if (!problem.defect.empty()) {
+    result.verdict = Verdict::kNotPosed;
+    result.message = problem.defect;
+    return result;
+  }
+  const TargetBlock& block = suite.blocks[id.block];
+  result.targets = static_cast<int>(problem.targets.size());
+  if (block.is_path()) {
+    FollowPath(suite, block, problem, subject, &result);
+  } else {
+    SolvePose(suite, block.kind, problem, subject, &result);
+  }
+  return result;
+}
+
+}  // namespace vmech
