@@ -1,6 +1,7 @@
 #include "vmech/solvers/backend.h"
 
 #include "vmech/solvers/augmented_lagrangian.h"
+#include "vmech/solvers/ceres.h"
 #include "vmech/solvers/ipopt.h"
 #include "vmech/solvers/kinsol.h"
 #include "vmech/solvers/nlopt.h"
@@ -10,13 +11,6 @@
 namespace vmech {
 namespace {
 
-template <typename Options>
-Summary SolveWith(Options options, ConstrainedLeastSquares& problem, const StoppingRule& stopping,
-                  const VectorXd& x0) {
-  options.stopping = stopping;
-  return Solve(problem, options, x0);
-}
-
 struct Entry {
   std::string_view name;
   Summary (*solve)(ConstrainedLeastSquares&, const StoppingRule&, const VectorXd&);
@@ -25,7 +19,18 @@ struct Entry {
 template <typename Options>
 Summary SolveByDefault(ConstrainedLeastSquares& problem, const StoppingRule& stopping,
                        const VectorXd& x0) {
-  return SolveWith(Options{}, problem, stopping, x0);
+  Options options;
+  options.stopping = stopping;
+  return Solve(problem, options, x0);
+}
+
+template <typename Options, auto kMethod>
+Summary SolveByMethod(ConstrainedLeastSquares& problem, const StoppingRule& stopping,
+                      const VectorXd& x0) {
+  Options options;
+  options.method = kMethod;
+  options.stopping = stopping;
+  return Solve(problem, options, x0);
 }
 
 // In the order of the enumeration.
@@ -33,6 +38,8 @@ constexpr Entry kEntries[] = {
     {"penalty", SolveByDefault<PenaltyOptions>},
     {"augmented_lagrangian", SolveByDefault<AugmentedLagrangianOptions>},
     {"nullspace", SolveByDefault<NullspaceOptions>},
+    {"ceres_weighted", SolveByMethod<CeresOptions, CeresMethod::kWeighted>},
+    {"ceres_exact", SolveByMethod<CeresOptions, CeresMethod::kExact>},
     {"ipopt", SolveByDefault<IpoptOptions>},
     {"nlopt_slsqp", SolveByDefault<NloptOptions>},
     {"kinsol", SolveByDefault<KinsolOptions>},

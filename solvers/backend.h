@@ -15,14 +15,18 @@ enum class Backend {
   kPenalty,
   kAugmentedLagrangian,
   kNullspace,
+  kCeresWeighted,
+  kCeresExact,
   kIpopt,
   kNloptSlsqp,
   kKinsol,
 };
 
 inline constexpr std::array kAllBackends = {
-    Backend::kPenalty, Backend::kAugmentedLagrangian, Backend::kNullspace,
-    Backend::kIpopt,   Backend::kNloptSlsqp,          Backend::kKinsol,
+    Backend::kPenalty,    Backend::kAugmentedLagrangian,
+    Backend::kNullspace,  Backend::kCeresWeighted,
+    Backend::kCeresExact, Backend::kIpopt,
+    Backend::kNloptSlsqp, Backend::kKinsol,
 };
 
 /// The name by which files and command lines know a back end.

@@ -11,6 +11,8 @@ namespace {
 // A bound nearer than this (relative to 1 or to its own size) may carry a multiplier; what it then
 // carries times the distance left counts as an error.
 constexpr double kNearBound = 1e-6;
+constexpr double kRankTolerance = 1e-9;
+constexpr double kFlat = 1e-6;  // curvature, relative to the Hessian's, that counts as none
 
 struct ActiveBound {
   int index;  // in the problem's list
@@ -183,6 +185,23 @@ Optimality MeasureOptimality(const std::vector<Bound>& bounds, const VectorXd& x
   result.kkt_error = error / std::max(1.0, MaxAbs(gradient));
   result.infeasibility_slope = InfeasibilitySlope(at_x, active);
   return result;
+}
+
+bool CurvesUpwards(ConstrainedLeastSquares& problem, const VectorXd& x, const Linearization& at_x,
+                   const VectorXd& multipliers) {
+  if (!problem.has_second_derivatives()) return true;
+  const std::vector<ActiveBound> active = NearBounds(problem.bounds(), x);
+  const Eigen::Index m = at_x.C.rows(), n = at_x.C.cols();
+  MatrixXd rows = MatrixXd::Zero(m + static_cast<Eigen::Index>(active.size()), n);
+  rows.topRows(m) = at_x.C;
+  for (size_t k = 0; k < active.size(); ++k) rows(m + k, active[k].tangent) = 1;
+  const MatrixXd Z = CompleteOrthogonal(rows, kRankTolerance).Z;
+  MatrixXd hessian = MatrixXd::Zero(n, n);
+  problem.Curvature(x, multipliers, &hessian);
+  hessian += at_x.J.transpose() * at_x.J;
+  MatrixXd reduced = Z.transpose() * hessian * Z;
+  reduced.diagonal().array() += kFlat * hessian.norm() + std::numeric_limits<double>::min();
+  return Eigen::LLT<MatrixXd>(reduced).info() == Eigen::Success;
 }
 
 }  // namespace vmech

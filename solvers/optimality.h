@@ -34,4 +34,10 @@ struct Optimality {
 Optimality MeasureOptimality(const std::vector<Bound>& bounds, const VectorXd& x,
                              const Linearization& at_x, double rank_tolerance = 1e-9);
 
+/// Whether the Hessian of the Lagrangian, J'J + S, nowhere curves downwards along the constraints
+/// and the bounds that x lies on: it does at saddle points and maxima, where the KKT error vanishes
+/// too. True for problems without second derivatives, of which nothing is known.
+bool CurvesUpwards(ConstrainedLeastSquares& problem, const VectorXd& x, const Linearization& at_x,
+                   const VectorXd& multipliers);
+
 }  // namespace vmech

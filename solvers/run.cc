@@ -30,13 +30,15 @@ Outcome Call(const BackEnd& back_end, CountedProblem& problem, VectorXd* x) {
   }
 }
 
-void Verdict(const StoppingRule& rule, const Optimality& at_x, const Outcome& outcome,
-             Summary* summary) {
+void Verdict(const StoppingRule& rule, const Optimality& at_x, bool curves_upwards,
+             const Outcome& outcome, Summary* summary) {
   const bool feasible = at_x.constraint_norm <= rule.constraint_tolerance &&
                         at_x.bound_violation <= rule.constraint_tolerance;
   if (feasible && at_x.kkt_error <= rule.optimality_tolerance) {
-    summary->status = SolveStatus::kConverged;
-    summary->message = "a constrained minimum";
+    summary->status = curves_upwards ? SolveStatus::kConverged : SolveStatus::kStalled;
+    summary->message = curves_upwards ? "a constrained minimum"
+                                      : "a saddle point or maximum: the gradient vanishes, but the "
+                                        "objective falls to both sides";
   } else if (!feasible && at_x.constraint_norm > rule.constraint_tolerance &&
              at_x.infeasibility_slope < kStationarySlope) {
     summary->status = SolveStatus::kInfeasible;
@@ -65,7 +67,8 @@ void Judge(ConstrainedLeastSquares& problem, const StoppingRule& rule, const Out
   summary->constraint_norm = optimality.constraint_norm;
   summary->bound_violation = optimality.bound_violation;
   summary->kkt_error = optimality.kkt_error;
-  Verdict(rule, optimality, outcome, summary);
+  const bool curves_upwards = CurvesUpwards(problem, summary->x, at_x, optimality.multipliers);
+  Verdict(rule, optimality, curves_upwards, outcome, summary);
   summary->multipliers = std::move(optimality.multipliers);
   summary->bound_multipliers = std::move(optimality.bound_multipliers);
 }

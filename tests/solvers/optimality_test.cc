@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include "textbook_problems.h"
+#include "vmech/solvers/backend.h"
 
 namespace vmech {
 namespace {
 
 using testing::FindProblem;
+using testing::TextbookProblem;
 
 Optimality At(const std::string& name, const VectorXd& x) {
   const auto problem = FindProblem(name).make();
@@ -55,6 +57,28 @@ TEST(Optimality, GivesRedundantRowsTheMultipliersOfLeastNorm) {
   const Optimality at = At("CircleThrice", FindProblem("CircleThrice").solution);
   EXPECT_LT(at.kkt_error, kRounding);
   EXPECT_NEAR(at.multipliers[1], 2 * at.multipliers[0], kRounding);  // parallel rows share the load
+}
+
+TEST(Optimality, TellsAMinimumFromAMaximum) {
+  const auto problem = FindProblem("CircleThrice").make();  // nearest to (2, 1)
+  const VectorXd nearest = FindProblem("CircleThrice").solution;
+  for (const double side : {1.0, -1.0}) {
+    const VectorXd x = side * nearest;
+    Linearization at_x(problem->sizes());
+    at_x.Evaluate(*problem, x);
+    const Optimality at = MeasureOptimality(problem->bounds(), x, at_x);
+    EXPECT_LT(at.kkt_error, kRounding);
+    EXPECT_EQ(CurvesUpwards(*problem, x, at_x, at.multipliers), side > 0);
+  }
+}
+
+// From its far side the circle's stationary point is a maximum, and KINSOL knows equations only.
+TEST(Optimality, DoesNotCallAMaximumSolved) {
+  const TextbookProblem& known = FindProblem("CircleThrice");
+  const Summary summary = Solve(Backend::kKinsol, *known.make(), {}, -1.01 * known.solution);
+  if (summary.status == SolveStatus::kUnavailable) GTEST_SKIP() << summary.message;
+  EXPECT_LT(summary.kkt_error, 1e-9);
+  EXPECT_EQ(summary.status, SolveStatus::kStalled) << summary.FullReport();
 }
 
 }  // namespace

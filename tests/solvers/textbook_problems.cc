@@ -199,6 +199,33 @@ void AddBounded(std::vector<TextbookProblem>* all) {
       {{0, 0, -std::numeric_limits<double>::infinity(), 0.5}}));
 }
 
+// Bounds that are met on the way or in the end, with curved constraints and in numbers.
+void AddBoxes(std::vector<TextbookProblem>* all) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  const auto from_2_1 = [](const V& x) { return V{x[0] - 2, x[1] - 1}; };
+  const auto circle = [](const V& x) { return V{Square(x[0]) + Square(x[1]) - 1}; };
+  const double height = std::sqrt(0.75);
+  all->push_back(Formula("CircleWithActiveBound", Vec({-0.1, 0.8}), Vec({0.5, height}),
+                         0.5 * (2.25 + (1 - height) * (1 - height)), from_2_1, circle,
+                         {{0, 0, -kNone, 0.5}, {1, 1, 0, kNone}}));
+  // From the start the circle is reached at x1 = 0.95, its upper bound, then left for 2/sqrt(5).
+  const double root5 = std::sqrt(5.0);
+  all->push_back(Formula("CircleAlongABoundThatIsLeft", Vec({0.95, 0.05}), Vec({2, 1}) / root5,
+                         0.5 * (root5 - 1) * (root5 - 1), from_2_1, circle,
+                         {{0, 0, -kNone, 0.95}, {1, 1, 0, 1}}));
+  // x_i = i - t where 0 <= x_i <= 2 allows it, and t = 2.25 makes the sum 4.5.
+  std::vector<Bound> box;
+  for (int i = 0; i < 5; ++i) box.push_back({i, i, 0, 2});
+  const VectorXd solution = Vec({0, 0, 0.75, 1.75, 2});
+  all->push_back(Formula(
+      "PlaneAcrossABox", 0.9 * VectorXd::Ones(5), solution,
+      0.5 * (solution - Vec({1, 2, 3, 4, 5})).squaredNorm(),
+      [](const V& x) {
+        return V{x[0] - 1, x[1] - 2, x[2] - 3, x[3] - 4, x[4] - 5};
+      },
+      [](const V& x) { return V{x[0] + x[1] + x[2] + x[3] + x[4] - 4.5}; }, box));
+}
+
 // The point of the unit circle nearest to (2, 1), the circle said three times over.
 void AddRedundant(std::vector<TextbookProblem>* all) {
   const double root5 = std::sqrt(5.0);
@@ -301,6 +328,7 @@ std::vector<TextbookProblem> MakeAll() {
   std::vector<TextbookProblem> all;
   AddHockSchittkowski(&all);
   AddBounded(&all);
+  AddBoxes(&all);
   AddRedundant(&all);
   AddFourBar(&all);
   all.push_back({"QuaternionOnACone", [] { return std::make_unique<ConeProblem>(); },

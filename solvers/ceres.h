@@ -1,0 +1,36 @@
+#pragma once
+
+#include "vmech/solvers/constrained_least_squares.h"
+#include "vmech/solvers/stopping_rule.h"
+#include "vmech/solvers/summary.h"
+
+namespace vmech {
+
+enum class CeresMethod {
+  kWeighted,  ///< constraints as residuals of one weight: biased, as `penalty` is
+  kExact,     ///< the same with multiplier updates until the stopping rule is met
+};
+
+/// Levenberg-Marquardt of Ceres Solver, by QR, on
+///
+///     1/2 |r|^2 + 1/2 |w (c + mu/w^2)|^2,      mu += w^2 c after each solve (kExact)
+///
+/// Ceres projects its steps on the bounds, which leaves it stuck where a bound is active and the
+/// constraints are stiff: the projected step leaves the constraints, and only steps of no length
+/// are then accepted. So coordinates that have arrived at a bound are taken out of the manifold
+/// that Ceres moves on, and let go again where their bound would have to pull: an active set.
+/// [Agarwal, Mierle et al., Ceres Solver 2.1; Nocedal & Wright 2006, 17.3 and 16.5]
+struct CeresOptions {
+  CeresMethod method = CeresMethod::kExact;
+  /// w [-], in [1, 1e6], see PenaltyOptions::weight; kExact begins with it.
+  double weight = 1e3;
+  /// Largest w [-], in [weight, 1e7]: kExact raises it where the constraints close too slowly.
+  double max_weight = 1e5;
+  StoppingRule stopping;
+
+  void Validate() const;
+};
+
+Summary Solve(ConstrainedLeastSquares& problem, const CeresOptions& options, const VectorXd& x0);
+
+}  // namespace vmech
