@@ -6,14 +6,18 @@
 #include <thread>
 
 #include "vmech/apps/commands.h"
+#include "vmech/apps/compare/comparison_report.h"
 #include "vmech/apps/compare/digest.h"
 #include "vmech/apps/compare/journal.h"
+#include "vmech/apps/compare/report_sections.h"
 #include "vmech/apps/compare/result_text.h"
 #include "vmech/apps/compare/run_comparison.h"
 #include "vmech/apps/compare/suite_reader.h"
+#include "vmech/apps/compare/summary_json.h"
 #include "vmech/apps/mpi_session.h"
 #include "vmech/apps/output_folder.h"
 #include "vmech/apps/progress_bar.h"
+#include "vmech/comparison/statistics.h"
 #include "vmech/comparison/target_maker.h"
 #include "vmech/mechanisms/document.h"
 
@@ -25,13 +29,13 @@ int Jobs(const CompareArguments& arguments) {
   return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 256);
 }
 
-/// The solvers of that names, each once, in the order of kAllBackends; all if there is no name.
-std::vector<Backend> SolversNamed(const std::vector<std::string>& names) {
+/// The solvers of that names, each once, in the order of tables; all if there is no name.
+std::vector<Contestant> SolversNamed(const std::vector<std::string>& names) {
   std::vector<std::string> known;
-  for (const Backend solver : kAllBackends) known.emplace_back(NameOf(solver));
-  std::vector<Backend> solvers;
+  for (const Contestant solver : AllContestants()) known.emplace_back(solver.name());
+  std::vector<Contestant> solvers;
   for (const std::string& name : names) {
-    const std::optional<Backend> solver = BackendFromName(name);
+    const std::optional<Contestant> solver = ContestantFromName(name);
     if (!solver) {
       throw std::invalid_argument(fmt::format("--solvers: {} is no solver{}; there are {}",
                                               Quoted(name), DidYouMean(name, known),
@@ -39,7 +43,7 @@ std::vector<Backend> SolversNamed(const std::vector<std::string>& names) {
     }
     solvers.push_back(*solver);
   }
-  if (names.empty()) solvers.assign(kAllBackends.begin(), kAllBackends.end());
+  if (names.empty()) solvers = AllContestants();
   std::sort(solvers.begin(), solvers.end());
   solvers.erase(std::unique(solvers.begin(), solvers.end()), solvers.end());
   return solvers;
@@ -50,9 +54,29 @@ void CheckMechanisms(const Suite& suite) {
   for (const SuiteMechanism& mechanism : suite.mechanisms) Subject assembled(mechanism);
 }
 
+void PrintSummary(const Suite& suite, const std::vector<Result>& results,
+                  const OutputFolder& folder) {
+  size_t width = 8;
+  for (const Contestant solver : AllContestants()) width = std::max(width, solver.name().size());
+  fmt::print("{}: {} rows, solved of each kind\n  {:<{}}", suite.name, results.size(), "", width);
+  for (const TargetBlock& block : suite.blocks) fmt::print(" {:>12}", block.name);
+  fmt::print("\n");
+  for (const Contestant solver : SolversOf(results)) {
+    fmt::print("  {:<{}}", solver.name(), width);
+    for (size_t b = 0; b < suite.blocks.size(); ++b) {
+      const Tally tally = TallyOf(suite, results, [&](const Result& r) {
+        return r.solver == solver && r.problem.block == static_cast<int>(b);
+      });
+      fmt::print(" {:>12}", tally.problems == 0 ? "-" : Percent(tally.succeeded, tally.problems));
+    }
+    fmt::print("\n");
+  }
+  fmt::print("written to {}\n", (folder.path() / "report.html").string());
+}
+
 int Compare(const CompareArguments& arguments, MpiSession* mpi) {
   const Suite suite = ReadSuite(arguments.suite);
-  const std::vector<Backend> solvers = SolversNamed(arguments.solvers);
+  const std::vector<Contestant> solvers = SolversNamed(arguments.solvers);
   CheckMechanisms(suite);
   const Work work = ComparisonWork(suite);
   if (mpi != nullptr && mpi->is_worker()) {
@@ -74,7 +98,10 @@ int Compare(const CompareArguments& arguments, MpiSession* mpi) {
   }
   OutputFolder folder(folder_name);
   folder.Write("results.csv", ResultsTable(suite, results));
+  folder.Write("summary.json", ComparisonSummary(suite, results, VMECH_VERSION));
+  folder.Write("report.html", RenderComparisonReport(suite, results, VMECH_VERSION));
   folder.Commit();
+  if (!arguments.quiet) PrintSummary(suite, results, folder);
   return kSuccess;
 }
 

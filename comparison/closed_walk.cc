@@ -56,10 +56,11 @@ VectorXd TangentScale(const KinematicTree& tree) {
   return scale;
 }
 
-ClosedWalk::ClosedWalk(const KinematicTree& tree, const std::vector<Bound>& bounds, VectorXd q,
-                       PortableRandom* random)
+ClosedWalk::ClosedWalk(const KinematicTree& tree, const std::vector<Bound>& bounds, int rank,
+                       VectorXd q, PortableRandom* random)
     : tree_(tree),
       bounds_(bounds),
+      rank_(rank),
       scale_(TangentScale(tree)),
       q_(std::move(q)),
       direction_(random->NormalVector(tree.nv)),
@@ -86,9 +87,16 @@ bool ClosedWalk::TryStep(double size, const VectorXd& wish) {
   if (!Assemble(tree_, {}, &next).closed || !WithinLimits(next)) return false;
   const double distance = ConfigurationDistance(tree_, q_, next);
   if (distance < kShortest * size || distance > kLongest * size) return false;
+  if (!LoopsKeepRank(next) && LoopsKeepRank(q_)) return false;
   direction_ = along.normalized();
   q_ = next;
   return true;
+}
+
+bool ClosedWalk::LoopsKeepRank(const VectorXd& q) const {
+  constexpr double kNearlyLost = 0.02;  // pivot of the dimensionless C, over the largest
+  if (tree_.loops.empty()) return true;
+  return FindNullSpace(DimensionlessLoopJacobian(tree_, q), kNearlyLost).rank >= rank_;
 }
 
 bool ClosedWalk::WithinLimits(const VectorXd& q) const {

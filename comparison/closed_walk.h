@@ -20,15 +20,17 @@ MatrixXd FreeMotionBasis(const KinematicTree& tree, const VectorXd& q);
 VectorXd TangentScale(const KinematicTree& tree);
 
 /// A walk over closed configurations within the joint limits, on one branch: small steps along the
-/// free motions, each closed again by Assemble.
+/// free motions, each closed again by Assemble. It keeps away from poses where the loops lose rank:
+/// there branches meet, and no solver could tell which one is meant.
 class ClosedWalk {
  public:
-  /// q must be closed. The first direction is random.
-  ClosedWalk(const KinematicTree& tree, const std::vector<Bound>& bounds, VectorXd q,
+  /// q must be closed; `rank` is that of the loop equations in general (AnalyseMobility). The first
+  /// direction is random.
+  ClosedWalk(const KinematicTree& tree, const std::vector<Bound>& bounds, int rank, VectorXd q,
              PortableRandom* random);
 
   /// Goes on by `size`, turning by about `turn` [rad] if there is more than one freedom. Where the
-  /// way ahead is barred by a limit it takes another. False, and no step, if there is none.
+  /// way ahead is barred it takes another. False, and no step, if there is none.
   bool Step(double size, double turn);
 
   const VectorXd& q() const { return q_; }
@@ -38,9 +40,11 @@ class ClosedWalk {
  private:
   bool TryStep(double size, const VectorXd& wish);
   bool WithinLimits(const VectorXd& q) const;
+  bool LoopsKeepRank(const VectorXd& q) const;
 
   const KinematicTree& tree_;
   const std::vector<Bound>& bounds_;
+  int rank_;
   VectorXd scale_;
   VectorXd q_, direction_;
   PortableRandom* random_;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "vmech/comparison/closed_walk.h"
+#include "vmech/comparison/statistics.h"
 #include "vmech/kinematics/linear_algebra.h"
 #include "vmech/kinematics/mobility.h"
 
@@ -70,10 +71,10 @@ class Judged {
   Judged(const Suite& suite, const Problem& problem, Subject* subject, size_t target)
       : suite_(suite), problem_(problem), subject_(*subject), target_(target) {}
 
-  const Summary& Solve(Backend solver, const VectorXd& x0) {
+  const Summary& Solve(Contestant solver, const VectorXd& x0) {
     InverseKinematics& ik = subject_.problem();
     ik.SetTarget(problem_.targets[target_]);
-    summary_ = vmech::Solve(solver, ik, suite_.stopping, x0);
+    summary_ = vmech::Solve(solver.backend(), ik, suite_.stopping, x0);
     e1_ = ik.HandError(summary_.x);
     if (ik.grasp().kind == GraspKind::kPoint) e1_.tail<3>().setZero();
     distance_ = ConfigurationDistance(subject_.tree(), summary_.x, problem_.own[target_]);
@@ -144,12 +145,6 @@ class Judged {
   double distance_ = 0;
 };
 
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 void SolvePose(const Suite& suite, TargetKind kind, const Problem& problem, Subject* subject,
                Result* result) {
   Judged judged(suite, problem, subject, 0);
@@ -166,7 +161,7 @@ void SolvePose(const Suite& suite, TargetKind kind, const Problem& problem, Subj
       times.push_back(judged.Solve(result->solver, problem.start).seconds);
     }
   }
-  result->time = Median(times);
+  result->time = MedianOf(times);
 }
 
 void FollowPath(const Suite& suite, const TargetBlock& block, const Problem& problem,
@@ -194,9 +189,8 @@ void FollowPath(const Suite& suite, const TargetBlock& block, const Problem& pro
       continue;
     }
     ++result->reached;
-    if (ConfigurationDistance(subject->tree(), x, summary.x) > kJump * since * block.step) {
-      ++result->jumps;
-    }
+    const double moved = ConfigurationDistance(subject->tree(), x, summary.x);
+    if (problem.determined && moved > kJump * since * block.step) ++result->jumps;
     since = 1;
     x = summary.x;
   }
@@ -209,7 +203,7 @@ void FollowPath(const Suite& suite, const TargetBlock& block, const Problem& pro
 }  // namespace
 
 Result SolveProblem(const Suite& suite, const ProblemId& id, const Problem& problem,
-                    Subject* subject, Backend solver) {
+                    Subject* subject, Contestant solver) {
   Result result;
   result.problem = id;
   result.solver = solver;

@@ -11,8 +11,8 @@ namespace vmech {
 /// A single target is solved `repetitions` times from the same start; time is the median. A path is
 /// followed once, every target from the configuration that was found for the last one; a target
 /// that is not reached leaves that where it is. A jump is a step of more than ten times the path's
-/// own.
+/// own, where the grasp tells the configuration.
 Result SolveProblem(const Suite& suite, const ProblemId& id, const Problem& problem,
-                    Subject* subject, Backend solver);
+                    Subject* subject, Contestant solver);
 
 }  // namespace vmech

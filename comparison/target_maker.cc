@@ -9,9 +9,9 @@
 #include <optional>
 #include <stdexcept>
 
-#include "vmech/comparison/closed_walk.h"
 #include "vmech/kinematics/assembly.h"
 #include "vmech/kinematics/linear_algebra.h"
+#include "vmech/kinematics/mobility.h"
 
 namespace vmech {
 namespace {
@@ -30,14 +30,16 @@ VectorXd ClosedStart(const KinematicTree& tree, const std::string& name) {
 
 VectorXd RandomConfiguration(Subject* subject, PortableRandom* random) {
   constexpr int kLongest = 48;
-  ClosedWalk walk(subject->tree(), subject->problem().bounds(), subject->q_start(), random);
-  for (int steps = 1 + random->Below(kLongest); steps > 0; --steps) walk.Step(kStride, kTurn);
+  ClosedWalk walk = subject->WalkFrom(subject->q_start(), random);
+  for (int steps = 1 + random->Below(kLongest); steps > 0; --steps) {
+    walk.Step(kStride * random->Between(0.5, 1.5), kTurn);
+  }
   return walk.q();
 }
 
 /// A closed configuration at a distance, in small steps that stay on the branch.
 VectorXd AtDistance(Subject* subject, const VectorXd& q, double distance, PortableRandom* random) {
-  ClosedWalk walk(subject->tree(), subject->problem().bounds(), q, random);
+  ClosedWalk walk = subject->WalkFrom(q, random);
   const int steps = std::max(1, static_cast<int>(std::ceil(distance / kStride)));
   for (int i = 0; i < steps; ++i) walk.Step(distance / steps, 0);
   return walk.q();
@@ -81,7 +83,7 @@ VectorXd Downhill(Subject* subject, VectorXd q, double closeness, PortableRandom
   double least = subject->Determination(q);
   for (double size = kStride; size > kShortest && least > closeness; size /= 2) {
     for (int i = 0; i < kTries && least > closeness; ++i) {
-      ClosedWalk walk(subject->tree(), subject->problem().bounds(), q, random);
+      ClosedWalk walk = subject->WalkFrom(q, random);
       if (!walk.Step(size, 0)) continue;
       const double value = subject->Determination(walk.q());
       if (value < least) least = value, q = walk.q(), i = -1;
@@ -126,8 +128,7 @@ std::vector<VectorXd> PathThroughDeadCentre(Subject* subject, const TargetBlock&
                                             PortableRandom* random) {
   constexpr double kLongestWay = 15;  // [rad, lengths]: more than a cycle
   const int before = block.steps / 2;
-  ClosedWalk walk(subject->tree(), subject->problem().bounds(),
-                  RandomConfiguration(subject, random), random);
+  ClosedWalk walk = subject->WalkFrom(RandomConfiguration(subject, random), random);
   std::deque<VectorXd> path{walk.q()};
   if (!walk.Step(block.step, 0)) return {};
   VectorXd direction = walk.direction();
@@ -150,8 +151,7 @@ std::vector<VectorXd> PathThroughDeadCentre(Subject* subject, const TargetBlock&
 }
 
 std::vector<VectorXd> Path(Subject* subject, const TargetBlock& block, PortableRandom* random) {
-  ClosedWalk walk(subject->tree(), subject->problem().bounds(),
-                  RandomConfiguration(subject, random), random);
+  ClosedWalk walk = subject->WalkFrom(RandomConfiguration(subject, random), random);
   std::vector<VectorXd> path{walk.q()};
   for (int i = 0; i < block.steps; ++i) {
     walk.Step(block.step, kPathTurn);
@@ -196,7 +196,12 @@ Subject::Subject(const SuiteMechanism& given)
       problem_(tree_, GraspFrame{tree_.NodeOfLink(given.grasp.link),
                                  tree_.X_node_link(given.grasp.link) * given.grasp.X_LG,
                                  given.grasp.kind}),
-      q_start_(ClosedStart(tree_, given.name)) {}
+      q_start_(ClosedStart(tree_, given.name)),
+      rank_(AnalyseMobility(tree_, q_start_).rank) {}
+
+ClosedWalk Subject::WalkFrom(const VectorXd& q, PortableRandom* random) const {
+  return {tree_, problem_.bounds(), rank_, q, random};
+}
 
 MatrixXd Subject::GraspMotions(const VectorXd& q) {
   MatrixXd J(problem_.sizes().residuals, tree_.nv);

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "vmech/comparison/closed_walk.h"
 #include "vmech/comparison/random.h"
 #include "vmech/comparison/suite.h"
 #include "vmech/kinematics/inverse_kinematics.h"
@@ -20,6 +21,7 @@ class Subject {
   const KinematicTree& tree() const { return tree_; }
   InverseKinematics& problem() { return problem_; }
   const VectorXd& q_start() const { return q_start_; }  ///< closed
+  ClosedWalk WalkFrom(const VectorXd& q, PortableRandom* random) const;
 
   /// The grasp's motions, J Z [rows of e1, mobility], in radians and characteristic lengths.
   MatrixXd GraspMotions(const VectorXd& q);
@@ -32,6 +34,7 @@ class Subject {
   KinematicTree tree_;
   InverseKinematics problem_;
   VectorXd q_start_;
+  int rank_;  // of the loop equations, in general
 };
 
 /// A target, or a path of targets, and where to begin.

@@ -86,7 +86,7 @@ void Journal::Read(const Origin& origin, const Suite& suite) {
     Write(HeaderLine(origin));
     return;
   }
-  std::set<std::pair<ProblemId, Backend>> seen;
+  std::set<std::pair<ProblemId, Contestant>> seen;
   int line_number = 0;
   for (size_t at = 0; at <= end;) {
     const size_t stop = text.find('\n', at);
@@ -118,12 +118,12 @@ void Journal::CheckOrigin(std::string_view line, const Origin& origin) const {
                     "it names was changed; {}",
                     kRemedy));
   }
-  if (header.value("vmech_rows", "") != origin.version ||
-      header.value("program", "") != Hex(origin.program)) {
+  const std::string version = header.value("vmech_rows", "");
+  if (version != origin.version || header.value("program", "") != Hex(origin.program)) {
     Refuse(
-        fmt::format("holds rows of another build of vmech ({}; this is {}), which cannot stand "
-                    "beside those of this one; {}",
-                    header.value("vmech_rows", "unknown"), origin.version, kRemedy));
+        fmt::format("holds rows of another build of vmech{}, which cannot stand beside those of "
+                    "this one; {}",
+                    version == origin.version ? "" : ", version " + version, kRemedy));
   }
 }
 

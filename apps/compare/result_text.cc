@@ -29,7 +29,7 @@ std::string Row(const Suite& suite, const Result& r) {
   return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
                      suite.mechanisms[r.problem.mechanism].name, block.name, NameOf(block.kind),
                      block.is_path() ? "path" : NameOf(block.start), r.problem.index + 1,
-                     NameOf(r.solver), NameOf(r.verdict), r.targets, r.reached, r.jumps,
+                     r.solver.name(), NameOf(r.verdict), r.targets, r.reached, r.jumps,
                      r.iterations, r.evaluations, r.jacobian_evaluations, r.time, r.e1_position,
                      r.e1_rotation, r.e2, r.kkt, NameOf(r.branch), r.distance, InQuotes(r.message));
 }
@@ -40,7 +40,7 @@ std::string ToLine(const Result& r) {
   const Json json{{"mechanism", r.problem.mechanism},
                   {"block", r.problem.block},
                   {"index", r.problem.index},
-                  {"solver", NameOf(r.solver)},
+                  {"solver", r.solver.name()},
                   {"verdict", NameOf(r.verdict)},
                   {"message", r.message},
                   {"targets", r.targets},
@@ -64,7 +64,8 @@ std::optional<Result> ResultFromLine(std::string_view line) {
     const Json json = Json::parse(line);
     Result r;
     r.problem = {json.at("mechanism"), json.at("block"), json.at("index")};
-    const std::optional<Backend> solver = BackendFromName(json.at("solver").get<std::string>());
+    const std::optional<Contestant> solver =
+        ContestantFromName(json.at("solver").get<std::string>());
     if (!solver) return {};
     r.solver = *solver;
     r.verdict = VerdictFromName(json.at("verdict").get<std::string>());

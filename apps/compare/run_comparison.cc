@@ -20,13 +20,13 @@ namespace {
 /// A problem and the solvers that are still to solve it.
 struct Task {
   ProblemId problem;
-  std::vector<Backend> solvers;
+  std::vector<Contestant> solvers;
 };
 
 std::string TextOf(const Task& task) {
   std::string text =
       fmt::format("{} {} {}", task.problem.mechanism, task.problem.block, task.problem.index);
-  for (const Backend solver : task.solvers) text += fmt::format(" {}", NameOf(solver));
+  for (const Contestant solver : task.solvers) text += fmt::format(" {}", solver.name());
   return text;
 }
 
@@ -34,7 +34,7 @@ Task TaskFrom(const std::string& text) {
   Task task;
   std::istringstream words(text);
   words >> task.problem.mechanism >> task.problem.block >> task.problem.index;
-  for (std::string name; words >> name;) task.solvers.push_back(BackendFromName(name).value());
+  for (std::string name; words >> name;) task.solvers.push_back(ContestantFromName(name).value());
   return task;
 }
 
@@ -50,9 +50,9 @@ bool Before(const Result& a, const Result& b) {
 /// Collects results and knows what is missing.
 class Ledger {
  public:
-  Ledger(const Suite& suite, const std::vector<Backend>& solvers, Journal* journal)
+  Ledger(const Suite& suite, const std::vector<Contestant>& solvers, Journal* journal)
       : journal_(journal) {
-    std::set<std::pair<ProblemId, Backend>> there;
+    std::set<std::pair<ProblemId, Contestant>> there;
     for (const Result& result : journal->found()) {
       if (std::find(solvers.begin(), solvers.end(), result.solver) == solvers.end()) continue;
       there.insert({result.problem, result.solver});
@@ -60,7 +60,7 @@ class Ledger {
     }
     for (const ProblemId& problem : ProblemsOf(suite)) {
       Task task{problem, {}};
-      for (const Backend solver : solvers) {
+      for (const Contestant solver : solvers) {
         if (!there.contains({problem, solver})) task.solvers.push_back(solver);
       }
       if (!task.solvers.empty()) open_.push_back(task);
@@ -119,13 +119,13 @@ Work ComparisonWork(const Suite& suite) {
     Subject& subject = subjects->try_emplace(m, suite.mechanisms[m]).first->second;
     const Problem problem =
         MakeProblem(&subject, suite.blocks[task.problem.block], SeedOfProblem(suite, task.problem));
-    for (const Backend solver : task.solvers) {
+    for (const Contestant solver : task.solvers) {
       emit(ToLine(SolveProblem(suite, task.problem, problem, &subject, solver)));
     }
   };
 }
 
-std::vector<Result> RunComparison(const Suite& suite, const std::vector<Backend>& solvers,
+std::vector<Result> RunComparison(const Suite& suite, const std::vector<Contestant>& solvers,
                                   const Spread& spread, Journal* journal,
                                   const std::function<void(size_t done, size_t all)>& progress) {
   Ledger ledger(suite, solvers, journal);

@@ -27,7 +27,7 @@ struct Layout {
   Scale x, y;
   double left = 0, right = 0, top = 0, bottom = 0;
   double caption_baseline = 0;
-  double legend_left = 0, legend_baseline = 0;
+  std::vector<Point> legend;  ///< where the entry of each series begins; empty without a legend
 
   Point At(double data_x, double data_y) const {
     return {left + x.Fraction(data_x) * (right - left),
@@ -55,10 +55,26 @@ std::string Caption(const Axis& axis, const Scale& scale) {
   return unit.empty() ? axis.title : fmt::format("{} [{}]", axis.title, unit);
 }
 
-double LegendWidth(const LinePlot& plot) {
-  double width = 0;
-  for (const Series& series : plot.series) width += 28 + TextWidth(series.name, kFont) + 16;
-  return width - 16;
+double EntryWidth(const Series& series) {
+  return 28 + TextWidth(series.name, kFont) + 16;
+}
+
+/// Places the legend beside the caption of the y axis, or in rows of its own above it. Returns the
+/// height of these.
+double PlaceLegend(const LinePlot& plot, double caption, Layout* layout) {
+  if (plot.series.size() < 2) return 0;
+  double width = -16;
+  for (const Series& series : plot.series) width += EntryWidth(series);
+  const bool beside = caption + 24 <= layout->right - width;
+  Point at{beside ? layout->right - width : 0, layout->caption_baseline};
+  for (const Series& series : plot.series) {
+    if (!beside && at.x > 0 && at.x + EntryWidth(series) - 16 > plot.width) {
+      at = {0, at.y + kRow};
+    }
+    layout->legend.push_back(at);
+    at.x += EntryWidth(series);
+  }
+  return beside ? 0 : at.y + kRow - layout->caption_baseline;
 }
 
 Layout Arrange(const LinePlot& plot) {
@@ -81,14 +97,8 @@ Layout Arrange(const LinePlot& plot) {
       static_cast<int>(std::max(2.0, (layout.right - layout.left) / kPixelsPerTickX));
   layout.x = ScaleOf(plot.x, xs, x_ticks, false);
 
-  const double legend = plot.series.size() > 1 ? LegendWidth(plot) : 0;
-  const double caption = TextWidth(Caption(plot.y, layout.y), kFont);
-  layout.legend_left = std::max(0.0, layout.right - legend);
-  layout.legend_baseline = layout.caption_baseline;
-  if (legend > 0 && caption + 24 > layout.legend_left) {  // not enough room: a row of its own
-    layout.caption_baseline += kRow;
-    layout.legend_left = 0;
-  }
+  layout.caption_baseline +=
+      PlaceLegend(plot, TextWidth(Caption(plot.y, layout.y), kFont), &layout);
   layout.top = layout.caption_baseline + 14;
   return layout;
 }
@@ -116,15 +126,12 @@ void DrawMarker(const Series& series, std::size_t index, Point at, SvgWriter* sv
 }
 
 void DrawLegend(const LinePlot& plot, const Layout& layout, SvgWriter* svg) {
-  if (plot.series.size() < 2) return;
-  double x = layout.legend_left;
-  for (std::size_t i = 0; i < plot.series.size(); ++i) {
+  for (std::size_t i = 0; i < layout.legend.size(); ++i) {
     const Series& series = plot.series[i];
-    const double y = layout.legend_baseline - 4;
+    const double x = layout.legend[i].x, y = layout.legend[i].y - 4;
     if (series.line != LineStyle::kNone) svg->Line(CurveCss(series, i), {x, y}, {x + 20, y});
     if (series.marker != Marker::kNone) DrawMarker(series, i, {x + 10, y}, svg);
-    svg->Text("", {x + 27, layout.legend_baseline}, series.name);
-    x += 28 + TextWidth(series.name, kFont) + 16;
+    svg->Text("", {x + 27, layout.legend[i].y}, series.name);
   }
 }
 

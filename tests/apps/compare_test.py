@@ -1,6 +1,7 @@
 """compare_test.py VMECH EXAMPLES: vmech compare as its users meet it."""
 
 import csv
+import json
 import pathlib
 import shutil
 import signal
@@ -9,6 +10,7 @@ import sys
 import tempfile
 import time
 import unittest
+import xml.etree.ElementTree
 
 VMECH = ""
 EXAMPLES = pathlib.Path()
@@ -78,6 +80,24 @@ class Compare(unittest.TestCase):
                 self.assertEqual(row["branch"], "own", row)
             if row["solver"] == "nullspace" and row["kind"] == "unreachable":
                 self.assertEqual(row["verdict"], "unreachable", row)
+
+    def test_sums_up_the_rows_in_json_and_on_a_page(self):
+        result = self.compare()
+        self.assertIn("written to suite-compare/report.html", result.stdout)
+        folder = self.folder / "suite-compare"
+        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+        self.assertEqual(summary["seed"], 7)
+        self.assertEqual(list(summary["solvers"]), SOLVERS.split(","))
+        near = summary["solvers"]["nullspace"]["near"]
+        self.assertEqual((near["problems"], near["succeeded"], near["own_branch"]), (10, 10, 10))
+        path = summary["solvers"]["augmented_lagrangian"]["tracking"]
+        self.assertEqual((path["targets"], path["reached"], path["jumps"]), (40, 40, 0))
+        page = xml.etree.ElementTree.parse(folder / "report.html").getroot()
+        text = "".join(page.itertext())
+        for words in ("Who solves what", "Performance profiles", "Accuracy", "Failures",
+                      "slider-crank", "the constraints stay open by multiplier / lambda^2"):
+            self.assertIn(words, text)
+        self.assertEqual(self.compare("--quiet").stdout, "")
 
     def test_gives_the_same_rows_whatever_the_number_of_jobs(self):
         for jobs in ("1", "2", "5"):

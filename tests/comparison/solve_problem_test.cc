@@ -23,7 +23,7 @@ struct OneBlock {
   Result Solve(uint64_t seed, Backend solver = Backend::kNullspace) {
     Subject subject(suite.mechanisms[0]);
     const Problem problem = MakeProblem(&subject, suite.blocks[0], seed);
-    return SolveProblem(suite, {}, problem, &subject, solver);
+    return SolveProblem(suite, {}, problem, &subject, Contestant(solver));
   }
   Suite suite;
 };

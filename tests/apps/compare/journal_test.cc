@@ -108,7 +108,8 @@ TEST_F(JournalFile, RefusesAnotherSuiteAndAnotherBuild) {
   { const Journal journal(folder_, kOrigin, SmallSuite()); }
   EXPECT_NE(Refusal({18, 4, "1.2.3"}).find("rows of another suite"), std::string::npos);
   EXPECT_NE(Refusal({17, 5, "1.2.3"}).find("another build of vmech"), std::string::npos);
-  EXPECT_NE(Refusal({17, 4, "1.2.4"}).find("this is 1.2.4"), std::string::npos);
+  EXPECT_NE(Refusal({17, 4, "1.2.4"}).find("another build of vmech, version 1.2.3"),
+            std::string::npos);
   EXPECT_EQ(Refusal(kOrigin), "");
 }
 
