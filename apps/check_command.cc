@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
 
 #include "vmech/apps/check.h"
 #include "vmech/apps/commands.h"
@@ -15,13 +16,21 @@ Mechanism ReadOrRedirect(const std::filesystem::path& path) {
   try {
     return ReadMechanism(path);
   } catch (const FileErrors& errors) {
-    const bool study =
-        std::any_of(errors.errors().begin(), errors.errors().end(),
-                    [](const FileError& error) { return error.path == "vmech_study"; });
-    if (!study) throw;
-    throw FileErrors(path.string(),
-                     "is a study; `vmech loads` runs it, `vmech check` takes the mechanism that "
-                     "it names");
+    const auto has = [&](std::string_view key) {
+      return std::any_of(errors.errors().begin(), errors.errors().end(),
+                         [&](const FileError& error) { return error.path == key; });
+    };
+    if (has("vmech_study")) {
+      throw FileErrors(path.string(),
+                       "is a study; `vmech loads` runs it, `vmech check` takes the mechanism that "
+                       "it names");
+    }
+    if (has("vmech_suite")) {
+      throw FileErrors(path.string(),
+                       "is a suite; `vmech compare` runs it, `vmech check` takes the mechanisms "
+                       "that it names");
+    }
+    throw;
   }
 }
 

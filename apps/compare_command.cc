@@ -49,6 +49,23 @@ std::vector<Contestant> SolversNamed(const std::vector<std::string>& names) {
   return solvers;
 }
 
+Suite ReadOrRedirect(const std::filesystem::path& path) {
+  try {
+    return ReadSuite(path);
+  } catch (const FileErrors& errors) {
+    const auto has = [&](std::string_view key) {
+      return std::any_of(
+          errors.errors().begin(), errors.errors().end(),
+          [&](const FileError& error) { return error.path == key && error.file == path; });
+    };
+    if (!has("vmech") && !has("vmech_study")) throw;
+    throw FileErrors(path.string(),
+                     fmt::format("is a {}; `vmech compare` takes a suite, which names mechanisms "
+                                 "and targets (docs/suite-format.md)",
+                                 has("vmech") ? "mechanism" : "study"));
+  }
+}
+
 /// Finds out before anything runs whether every mechanism can be assembled.
 void CheckMechanisms(const Suite& suite) {
   for (const SuiteMechanism& mechanism : suite.mechanisms) Subject assembled(mechanism);
@@ -75,7 +92,7 @@ void PrintSummary(const Suite& suite, const std::vector<Result>& results,
 }
 
 int Compare(const CompareArguments& arguments, MpiSession* mpi) {
-  const Suite suite = ReadSuite(arguments.suite);
+  const Suite suite = ReadOrRedirect(arguments.suite);
   const std::vector<Contestant> solvers = SolversNamed(arguments.solvers);
   CheckMechanisms(suite);
   const Work work = ComparisonWork(suite);

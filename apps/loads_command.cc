@@ -29,6 +29,10 @@ StudyFile ReadOrRedirect(const std::filesystem::path& path) {
     const bool mechanism = std::any_of(
         errors.errors().begin(), errors.errors().end(),
         [&](const FileError& error) { return error.path == "vmech" && error.file == path; });
+    const bool suite = std::any_of(
+        errors.errors().begin(), errors.errors().end(),
+        [&](const FileError& error) { return error.path == "vmech_suite" && error.file == path; });
+    if (suite) throw FileErrors(path.string(), "is a suite; `vmech compare` runs it");
     if (!mechanism) throw;
     throw FileErrors(path.string(),
                      "is a mechanism; `vmech check` reads it, `vmech loads` takes a study that "

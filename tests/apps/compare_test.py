@@ -177,6 +177,17 @@ class Compare(unittest.TestCase):
         self.assertIn("'nulspace' is no solver; did you mean 'nullspace'?", result.stderr)
         self.assertFalse((self.folder / "suite-compare").exists())
 
+    def test_sends_other_files_to_the_command_that_takes_them(self):
+        for name, words in (("rssr.yaml", "is a mechanism; `vmech compare` takes a suite"),
+                            ("four-bar-study.yaml", "is a study; `vmech compare` takes a suite")):
+            result = subprocess.run([VMECH, "compare", name], cwd=self.folder, capture_output=True,
+                                    text=True, timeout=60)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn(words, result.stderr)
+        result = subprocess.run([VMECH, "check", "suite.yaml"], cwd=self.folder,
+                                capture_output=True, text=True, timeout=60)
+        self.assertIn("is a suite; `vmech compare` runs it", result.stderr)
+
     def test_says_which_mechanism_cannot_be_assembled(self):
         text = (self.folder / "rssr.yaml").read_text(encoding="utf-8")
         self.write("rssr.yaml", text.replace("origin: [1", "origin: [99", 1))
