@@ -1,0 +1,45 @@
+#pragma once
+
+#include "vmech/hw_interface/arm_model.h"
+#include "vmech/hw_interface/estimators.h"
+#include "vmech/hw_interface/master.h"
+
+namespace vmech {
+
+struct PostureOptions {
+  double stiffness = 2;  ///< towards the nominal posture [N m/rad], in [0, 100]
+  double damping = 0.3;  ///< of motion that the hand does not feel [N m s/rad], in [0, 10]
+
+  /// @throws std::invalid_argument naming field, value and range.
+  void Validate() const;
+};
+
+/// Joint torques of an arm for a wrench at the handle (paper eq. 12 with the sign of F on the
+/// hand), and a torque towards the nominal posture in the null space of a redundant arm:
+///
+///   tau = J' F_Ho + (1 - J' Jbar') tau_p,   Jbar = M^-1 J' (J M^-1 J')^-1,
+///   tau_p = k (q_0 - q) - d v.
+///
+/// With Jbar the dynamically consistent inverse [Khatib 1987], tau_p does not accelerate the
+/// handle. Joint velocities come from an adaptive window. No allocation after construction.
+class ArmTorques {
+ public:
+  /// `resolution` of the encoders [rad]. @throws as Validate and ArmModel.
+  ArmTorques(const PostureOptions& options, std::shared_ptr<const ArmDescription> arm,
+             double period, double resolution);
+
+  void Reset() noexcept;
+  /// Writes `torque` of the command from its F_Ho_D at measured angles; `fresh` as in TickInput.
+  void Resolve(const MasterState& state, bool fresh, MasterCommand* command) noexcept;
+
+ private:
+  PostureOptions options_;
+  ArmModel arm_;
+  std::vector<AdaptiveWindow> velocity_;
+  VectorXd posture_torque_, torque_;
+  MatrixXd M_inverse_Jt_;  // [joints, 6]
+  Matrix6d yielding_;      // J M^-1 J'
+  Eigen::LLT<MatrixXd> factor_;
+};
+
+}  // namespace vmech

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "vmech/hw_interface/recording.h"
+
+namespace vmech {
+
+/// How the master's handle is laid over the mechanism's world W: D is placed by X_WD, and the
+/// hand's frame is the handle turned by R_HK, so that it can coincide with a grasp frame of any
+/// orientation.
+///
+///   X_WK = X_WD X_DH R_HK,   F_Ho_D = R_WD' F_Ko_W   (Ko = Ho)
+struct Registration {
+  Posed X_WD;
+  Matrix3d R_HK = Matrix3d::Identity();
+
+  Posed HandInWorld(const Posed& X_DH) const noexcept {
+    Posed X_WK = X_WD * X_DH;
+    X_WK.R *= R_HK;
+    return X_WK;
+  }
+};
+
+/// The registration that puts the hand where the grasp frame is, with the device's axes along R_WD:
+/// a grasp without a jump.
+Registration GraspedAt(const Matrix3d& R_WD, const Posed& X_DH, const Posed& X_WG) noexcept;
+
+struct TickInput {
+  Posed X_WH;          ///< the hand
+  bool fresh = false;  ///< false: no new sample, the pose is that of the last tick
+  double elapsed = 0;  ///< since the last fresh sample; a whole number of periods [s]
+  const MasterState* state = nullptr;
+};
+
+enum class TickStatus : std::uint8_t {
+  kOk,
+  kHeld,    ///< no pose was found for this hand; the last good one stays, and the wrench is sound
+  kFailed,  ///< no sound wrench: the loop stops
+};
+
+struct TickOutput {
+  TickStatus status = TickStatus::kOk;
+  Vector6d F_Ho_W = Vector6d::Zero();  ///< what the hand is to feel, about Ho, axes of W
+  double stored_energy = 0;            ///< of the virtual mechanism, see passivity.h [J]
+};
+
+/// The virtual side: from the hand to what it feels, once per sample. Implementations allocate in
+/// their constructors only.
+class Tick {
+ public:
+  virtual ~Tick() = default;
+  /// Names of what Step writes into `channels`, at most kMaxChannels.
+  virtual std::vector<std::string> ChannelNames() const = 0;
+  /// Where the hand takes hold: the grasp frame now.
+  virtual Posed GraspFrame() const noexcept = 0;
+  /// Forgets velocities: the hand takes hold anew.
+  virtual void Reset() noexcept = 0;
+  /// `channels` has as many entries as there are names.
+  [[nodiscard]] virtual TickOutput Step(const TickInput& input,
+                                        std::span<double> channels) noexcept = 0;
+};
+
+}  // namespace vmech
