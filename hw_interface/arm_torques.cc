@@ -40,7 +40,8 @@ void ArmTorques::Resolve(const MasterState& state, bool fresh, MasterCommand* co
   // At a singular posture nothing resists in some direction; a share of 1e-9 there is harmless.
   yielding_.diagonal().array() += 1e-9 * yielding_.trace();
   // What tau_p would do at the handle: Jbar' tau_p = (J M^-1 J')^-1 J M^-1 tau_p.
-  const Vector6d felt = yielding_.llt().solve(M_inverse_Jt_.transpose() * posture_torque_);
+  Vector6d felt = M_inverse_Jt_.transpose() * posture_torque_;
+  yielding_.llt().solveInPlace(felt);
   torque_ = posture_torque_;
   torque_.noalias() += arm_.J().transpose() * (command->F_Ho_D - felt);
   for (int i = 0; i < arm_.joints(); ++i) command->torque[i] = torque_[i];

@@ -1,0 +1,54 @@
+// The sanitizers bring an allocator of theirs.
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+
+#include <gtest/gtest.h>
+
+#include "support/count_allocations.h"
+#include "vmech/hw_interface/runner.h"
+#include "vmech/hw_interface/simulated_master.h"
+
+namespace vmech {
+namespace {
+
+/// A spring that notes how much had been allocated by its first ticks and by its last.
+class CountingTick : public Tick {
+ public:
+  std::vector<std::string> ChannelNames() const override { return {}; }
+  Posed GraspFrame() const noexcept override { return {}; }
+  void Reset() noexcept override {}
+  TickOutput Step(const TickInput& input, std::span<double>) noexcept override {
+    if (++ticks == 10) at_first = allocations;
+    at_last = allocations;
+    TickOutput out;
+    out.F_Ho_W.head<3>() = -100 * input.X_WH.p;
+    return out;
+  }
+  int ticks = 0;
+  long at_first = 0, at_last = 0;
+};
+
+/// The simulated arm included: a hand that wanders, torques of a redundant arm, lost commands.
+TEST(Runner, AllocatesNothingIn10000Ticks) {
+  SimulatedMasterOptions options;
+  options.motion = Wander(
+      ArmModel(std::make_shared<const ArmDescription>(SarcosMasterArm())).X_DH(), 0.05, 0.2, 3);
+  options.lost_share = 0.1;
+  options.delay_periods = 1;
+  SimulatedMaster master(options);
+  master.Configure();
+  CountingTick tick;
+  RunnerOptions run;
+  run.seconds = 10;
+  run.record = true;
+  run.realtime.reset();
+  FreeRunningClock clock;
+  const RunSummary summary = Runner(run, &master, &tick, &clock).Run();
+  EXPECT_EQ(summary.status, RunStatus::kFinished) << summary.FullReport();
+  EXPECT_EQ(tick.ticks, 10'000);
+  EXPECT_EQ(tick.at_last - tick.at_first, 0);
+}
+
+}  // namespace
+}  // namespace vmech
+
+#endif
