@@ -41,7 +41,10 @@ constexpr Entry kEntries[] = {
     {"ceres_weighted", SolveByMethod<CeresOptions, CeresMethod::kWeighted>},
     {"ceres_exact", SolveByMethod<CeresOptions, CeresMethod::kExact>},
     {"ipopt", SolveByDefault<IpoptOptions>},
-    {"nlopt_slsqp", SolveByDefault<NloptOptions>},
+    {"nlopt_slsqp", SolveByMethod<NloptOptions, NloptMethod::kSlsqp>},
+    {"nlopt_auglag_lbfgs", SolveByMethod<NloptOptions, NloptMethod::kAuglagLbfgs>},
+    {"nlopt_auglag_cobyla", SolveByMethod<NloptOptions, NloptMethod::kAuglagCobyla>},
+    {"nlopt_auglag_mma", SolveByMethod<NloptOptions, NloptMethod::kAuglagMma>},
     {"kinsol", SolveByDefault<KinsolOptions>},
 };
 static_assert(std::size(kEntries) == kAllBackends.size());

@@ -19,14 +19,24 @@ enum class Backend {
   kCeresExact,
   kIpopt,
   kNloptSlsqp,
+  kNloptAuglagLbfgs,
+  kNloptAuglagCobyla,
+  kNloptAuglagMma,
   kKinsol,
 };
 
 inline constexpr std::array kAllBackends = {
-    Backend::kPenalty,    Backend::kAugmentedLagrangian,
-    Backend::kNullspace,  Backend::kCeresWeighted,
-    Backend::kCeresExact, Backend::kIpopt,
-    Backend::kNloptSlsqp, Backend::kKinsol,
+    Backend::kPenalty,
+    Backend::kAugmentedLagrangian,
+    Backend::kNullspace,
+    Backend::kCeresWeighted,
+    Backend::kCeresExact,
+    Backend::kIpopt,
+    Backend::kNloptSlsqp,
+    Backend::kNloptAuglagLbfgs,
+    Backend::kNloptAuglagCobyla,
+    Backend::kNloptAuglagMma,
+    Backend::kKinsol,
 };
 
 /// The name by which files and command lines know a back end.

@@ -8,7 +8,7 @@ void NloptOptions::Validate() const {
 }
 
 Summary Solve(ConstrainedLeastSquares& problem, const NloptOptions& options, const VectorXd& x0) {
-  return Run("nlopt_slsqp", problem, options.stopping, x0, [](CountedProblem&, VectorXd*) {
+  return Run(NameOf(options.method), problem, options.stopping, x0, [](CountedProblem&, VectorXd*) {
     return Outcome{SolveStatus::kUnavailable,
                    "vmech was built without NLopt; install libnlopt-dev and build again"};
   });

@@ -184,7 +184,7 @@ void AddBounded(std::vector<TextbookProblem>* all) {
   const double a = std::sqrt(598.0 / 1200), b = 400 * a * a * a;
   const double x1 = 2 * a * std::cos(std::acos(1 / b) / 3);
   const double r1 = 10 * (1.5 - x1 * x1), r2 = 1 - x1;
-  all->push_back(Formula("HS2", Vec({2, 2}), Vec({x1, 1.5}), 0.5 * (r1 * r1 + r2 * r2),
+  all->push_back(Formula("HS2", Vec({1.4, 1.7}), Vec({x1, 1.5}), 0.5 * (r1 * r1 + r2 * r2),
                          [](const V& x) {
                            return V{10 * (x[1] - Square(x[0])), 1 - x[0]};
                          },
