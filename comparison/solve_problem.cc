@@ -92,10 +92,14 @@ class Judged {
   }
 
   Verdict verdict(TargetKind kind) const {
-    if (reached()) return Verdict::kSolved;
-    if (summary_.status != SolveStatus::kConverged) return VerdictOf(summary_.status);
     constexpr double kSaddle = -1e-6;
-    if (LeastCurvature(subject_.problem(), summary_) < kSaddle) return Verdict::kSaddle;
+    if (reached()) return Verdict::kSolved;
+    const bool stationary =
+        feasible() && summary_.kkt_error <= suite_.stopping.optimality_tolerance;
+    if (stationary && LeastCurvature(subject_.problem(), summary_) < kSaddle) {
+      return Verdict::kSaddle;
+    }
+    if (summary_.status != SolveStatus::kConverged) return VerdictOf(summary_.status);
     return kind == TargetKind::kUnreachable ? Verdict::kUnreachable : Verdict::kLocalMinimum;
   }
 
