@@ -29,8 +29,8 @@ DutyCycle CycleOfJoint(const LoadStudy& study, const LoadStudyResult& loads, int
   std::vector<double> times;
   for (const PoseLoads& pose : loads.poses) {
     times.push_back(pose.time);
-    cycle.angle.push_back(pose.joint_positions[joint][freedom]);
-    cycle.speed.push_back(pose.joint_rates[joint][freedom]);
+    cycle.angle.push_back(pose.joints[joint].position[freedom]);
+    cycle.speed.push_back(pose.joints[joint].rate[freedom]);
     cycle.wrench.push_back(pose.joints[joint]);
   }
   if (study.cycle > 0) {

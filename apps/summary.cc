@@ -74,7 +74,7 @@ std::string SummaryJson(const StudyFile& file, const StudyOutcome& outcome) {
   for (size_t k = 0; k < file.study.drives.size(); ++k) {
     double peak = 0;
     for (const PoseLoads& pose : loads.poses) {
-      peak = std::max(peak, std::abs(pose.drive_forces[k]));
+      peak = std::max(peak, std::abs(pose.drives[k].force));
     }
     drives.push_back({{"joint", file.study.mechanism.joints[file.study.drives[k].joint].name},
                       {"freedom", file.study.drives[k].freedom + 1},

@@ -123,7 +123,7 @@ std::string LoadsTable(const StudyFile& file, const LoadStudyResult& result, int
            row->Add(pose.time);
            for (const MotionSample& drive : pose.drives) row->Add(drive.position);
            for (const Wrenchd& joint : pose.joints) row->Add(joint);
-           for (double force : pose.drive_forces) row->Add(force);
+           for (const DriveSample& drive : pose.drives) row->Add(drive.force);
            if (file.study.hand) {
              row->Add(pose.hand);
              row->Add(pose.hand_error);

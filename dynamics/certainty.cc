@@ -34,7 +34,7 @@ class LoadMarker {
 
   void Mark(const VectorXd& direction, Certainty verdict, std::vector<JointCertainty>* result) {
     for (NodeState<double>& node : ws_.nodes) node.F_Bo = {};
-    for (JointState& joint : joints_) joint.W_M = {};
+    for (JointState<double>& joint : joints_) joint.W_M = {};
     const VectorXd mu = LoopRowScale(tree_).cwiseProduct(direction);
     AddMultiplierWrenches(tree_, mu.data(), &ws_);
     TreeJointWrenches(tree_, ws_, &joints_);
@@ -55,7 +55,7 @@ class LoadMarker {
  private:
   const KinematicTree& tree_;
   TreeWorkspace<double> ws_;
-  std::vector<JointState> joints_;
+  std::vector<JointState<double>> joints_;
 };
 
 }  // namespace

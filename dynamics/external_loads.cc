@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vmech/kinematics/packet.h"
+
 namespace vmech {
 
 bool OutsideTable(const ExternalLoad& load, double at) {
@@ -28,29 +30,44 @@ Wrenchd WrenchAt(const ExternalLoad& load, double at) {
   return {(1 - s) * a.force + s * b.force, (1 - s) * a.moment + s * b.moment};
 }
 
-double TableArgument(const ExternalLoad& load, const PoseInput& input) {
+double TableArgument(const LoadModel& model, const ExternalLoad& load, const Motion& motion,
+                     size_t pose) {
   switch (load.over) {
     case ExternalLoad::Over::kTime:
-      return input.time;
+      return motion.times[pose];
     case ExternalLoad::Over::kDriveCoordinate:
-      return input.drives.front().position;
+      return motion.drives[pose * model.drives.size()].position;
     case ExternalLoad::Over::kConstant:
       break;
   }
   return 0;
 }
 
-void EvaluateExternalLoads(const LoadModel& model, const PoseInput& input, const LoadWorkspace& ws,
-                           std::vector<Wrenchd>* external_W) {
+template <typename T>
+void EvaluateExternalLoads(const LoadModel& model, const Motion& motion, size_t pose,
+                           LoadWorkspace<T>* ws) {
   for (size_t i = 0; i < model.external.size(); ++i) {
     const ExternalLoad& load = model.external[i];
-    const Wrenchd w = WrenchAt(load, TableArgument(load, input));
+    Wrenchd lanes[kLanesOf<T>];
+    for (int lane = 0; lane < kLanesOf<T>; ++lane) {
+      lanes[lane] = WrenchAt(load, TableArgument(model, load, motion, pose + lane));
+    }
+    Wrench<T> W;
+    for (int k = 0; k < 3; ++k) {
+      W.force[k] = FromLanes<T>([&](int lane) { return lanes[lane].force[k]; });
+      W.moment[k] = FromLanes<T>([&](int lane) { return lanes[lane].moment[k]; });
+    }
     const int node = model.tree.NodeOfLink(load.link);
-    (*external_W)[i] = w;
+    ws->external_W[i] = W;
     if (load.axes == ExternalLoad::Axes::kWorld || node < 0) continue;
-    const Matrix3d R_WL = ws.tree.nodes[node].X_WB.R * model.tree.nodes[node].X_BL.R;
-    (*external_W)[i] = {R_WL * w.force, R_WL * w.moment};
+    const Matrix3<T> R_WL = ws->tree.nodes[node].X_WB.R * model.tree.nodes[node].X_BL.R.cast<T>();
+    ws->external_W[i] = {R_WL * W.force, R_WL * W.moment};
   }
 }
+
+template void EvaluateExternalLoads<double>(const LoadModel&, const Motion&, size_t,
+                                            LoadWorkspace<double>*);
+template void EvaluateExternalLoads<Packet>(const LoadModel&, const Motion&, size_t,
+                                            LoadWorkspace<Packet>*);
 
 }  // namespace vmech

@@ -12,10 +12,13 @@ Wrenchd WrenchAt(const ExternalLoad& load, double at);
 /// Is the argument outside a table that does not repeat?
 bool OutsideTable(const ExternalLoad& load, double at);
 /// Time, the first drive's coordinate, or zero: the argument of a load's table at a pose.
-double TableArgument(const ExternalLoad& load, const PoseInput& input);
+double TableArgument(const LoadModel& model, const ExternalLoad& load, const Motion& motion,
+                     size_t pose);
 
-/// All external wrenches at a pose about their points of application, world axes. Needs X_WB.
-void EvaluateExternalLoads(const LoadModel& model, const PoseInput& input, const LoadWorkspace& ws,
-                           std::vector<Wrenchd>* external_W);
+/// All external wrenches at the poses `pose`, ... about their points of application, world axes.
+/// Needs X_WB; writes ws->external_W.
+template <typename T>
+void EvaluateExternalLoads(const LoadModel& model, const Motion& motion, size_t pose,
+                           LoadWorkspace<T>* ws);
 
 }  // namespace vmech

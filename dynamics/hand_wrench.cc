@@ -17,7 +17,7 @@ MatrixXd GraspMotions(const LoadModel& model, const TreeWorkspace<double>& ws, c
 }
 
 /// s of the least squares (J N) s = V in the metric K.
-VectorXd NearestMotion(const LoadModel& model, const LoadWorkspace& ws, const Vector6d& V) {
+VectorXd NearestMotion(const LoadModel& model, const LoadWorkspace<double>& ws, const Vector6d& V) {
   const MatrixXd JN = GraspMotions(model, ws.tree, ws.motions);
   const MatrixXd KJN = model.hand_stiffness.asDiagonal() * JN;
   return SolveSymmetric(JN.transpose() * KJN, KJN.transpose() * V);
@@ -43,25 +43,25 @@ double HandAuthority(const LoadModel& model, const TreeWorkspace<double>& ws, co
   return sigma.minCoeff() / sigma.maxCoeff();
 }
 
-void HandVelocities(const LoadModel& model, const HandSample& hand, LoadWorkspace* ws) {
+void HandVelocities(const LoadModel& model, const HandSample& hand, LoadWorkspace<double>* ws) {
   ws->v = ws->motions * NearestMotion(model, *ws, hand.V_WH);
 }
 
-void HandAccelerations(const LoadModel& model, const HandSample& hand, LoadWorkspace* ws) {
+void HandAccelerations(const LoadModel& model, const HandSample& hand, LoadWorkspace<double>* ws) {
   const Vector6d A_WG = PointAcceleration(ws->tree, GraspNode(model), GraspPose(model, ws->tree).p);
   ws->vdot += ws->motions * NearestMotion(model, *ws, hand.A_WH - A_WG);
 }
 
-void ApplyHandWrench(const LoadModel& model, LoadWorkspace* ws, PoseLoads* out) {
+void ApplyHandWrench(const LoadModel& model, LoadWorkspace<double>* ws) {
   const MatrixXd JN = GraspMotions(model, ws->tree, ws->motions);
   const MatrixXd KJN = model.hand_stiffness.asDiagonal() * JN;
   const VectorXd along = ws->motions.transpose() * (ws->tau - ws->passive);
   const Vector6d w_d = KJN * SolveSymmetric(JN.transpose() * KJN, along);
-  out->hand = {w_d.head<3>(), w_d.tail<3>()};
+  ws->hand = {w_d.head<3>(), w_d.tail<3>()};
   const Vector3d p_WG = GraspPose(model, ws->tree).p;
   for (int n = GraspNode(model); n >= 0; n = model.tree.nodes[n].parent) {
     NodeState<double>& node = ws->tree.nodes[n];
-    node.F_Bo -= out->hand.ShiftedBy(p_WG - node.X_WB.p);
+    node.F_Bo -= ws->hand.ShiftedBy(p_WG - node.X_WB.p);
   }
   GeneralisedForces(model.tree, ws->tree, ws->tau.data());
 }

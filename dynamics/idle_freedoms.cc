@@ -13,7 +13,7 @@ namespace {
 
 /// Momentum of all links in the velocities v, as the generalised momentum M v along each idle
 /// motion: N_i' M v. Uses node velocities as scratch.
-VectorXd IdleMomentum(const LoadModel& model, const VectorXd& v, LoadWorkspace* ws) {
+VectorXd IdleMomentum(const LoadModel& model, const VectorXd& v, LoadWorkspace<double>* ws) {
   // M v is the inverse dynamics of the accelerations v at rest without gravity.
   const std::vector<Wrenchd> nothing(model.tree.nodes.size());
   const VectorXd rest = VectorXd::Zero(model.tree.nv);
@@ -26,7 +26,7 @@ VectorXd IdleMomentum(const LoadModel& model, const VectorXd& v, LoadWorkspace* 
   return ws->motions.rightCols(idle).transpose() * momentum;
 }
 
-MatrixXd IdleInertia(const LoadModel& model, LoadWorkspace* ws) {
+MatrixXd IdleInertia(const LoadModel& model, LoadWorkspace<double>* ws) {
   const auto idle = static_cast<Eigen::Index>(model.partition.idle.size());
   MatrixXd inertia(idle, idle);
   for (Eigen::Index k = 0; k < idle; ++k) {
@@ -71,13 +71,13 @@ VectorXd IdleShares(const LoadModel& model, const std::vector<Posed>& before, co
 
 }  // namespace
 
-void RemoveIdleMomentum(const LoadModel& model, LoadWorkspace* ws) {
+void RemoveIdleMomentum(const LoadModel& model, LoadWorkspace<double>* ws) {
   const auto idle = static_cast<Eigen::Index>(model.partition.idle.size());
   const VectorXd rate = SolveSymmetric(IdleInertia(model, ws), IdleMomentum(model, ws->v, ws));
   ws->v -= ws->motions.rightCols(idle) * rate;
 }
 
-void SettleIdleFreedoms(const LoadModel& model, LoadWorkspace* ws) {
+void SettleIdleFreedoms(const LoadModel& model, LoadWorkspace<double>* ws) {
   const auto idle = static_cast<Eigen::Index>(model.partition.idle.size());
   const VectorXd open = ws->motions.rightCols(idle).transpose() * (ws->tau - ws->passive);
   ws->vdot -= ws->motions.rightCols(idle) * SolveSymmetric(IdleInertia(model, ws), open);
@@ -96,8 +96,8 @@ void IdlePositions::Remember(const TreeWorkspace<double>& ws) {
   }
 }
 
-void IdlePositions::Settle(double tolerance, DependentSolver* dependents, TreeWorkspace<double>* ws,
-                           VectorXd* q) const {
+void IdlePositions::Settle(double tolerance, DependentSolver<double>* dependents,
+                           TreeWorkspace<double>* ws, VectorXd* q) const {
   constexpr int kMaxSteps = 20, kClosingSteps = 6;
   constexpr double kSettled = 1e-14;  // [rad]
   const auto idle = static_cast<Eigen::Index>(model_.partition.idle.size());
@@ -108,12 +108,12 @@ void IdlePositions::Settle(double tolerance, DependentSolver* dependents, TreeWo
     FreeMotions(*ws, dependents, &N);
     const VectorXd shift = -IdleShares(model_, before_, N.rightCols(idle), ws);
     Integrate(model_.tree, N.rightCols(idle) * shift, q);
-    CloseByNewton(model_.tree, tolerance, kClosingSteps, dependents, ws, q);
+    CloseByNewton(model_.tree, tolerance, kClosingSteps, dependents, ws, q->data());
     if (shift.cwiseAbs().maxCoeff() < kSettled) return;
   }
 }
 
-double IdleShift(const LoadModel& model, const LoadWorkspace& ws, int k) {
+double IdleShift(const LoadModel& model, const LoadWorkspace<double>& ws, int k) {
   TreeWorkspace<double> scratch = ws.tree;
   const auto column = static_cast<Eigen::Index>(model.partition.driven.size()) + k;
   const VectorXd v = ws.motions.col(column);

@@ -13,11 +13,11 @@ namespace vmech {
 /// Both hold at all times for a rod whose mass is symmetric about the axis of its spin.
 
 /// Adds to ws->v the idle motion that takes its momentum away. Needs X_WB and ws->motions.
-void RemoveIdleMomentum(const LoadModel& model, LoadWorkspace* ws);
+void RemoveIdleMomentum(const LoadModel& model, LoadWorkspace<double>* ws);
 
 /// Adds to ws->vdot the idle acceleration that leaves no force open along the idle freedoms; brings
 /// accelerations, F_Bo and tau up to date.
-void SettleIdleFreedoms(const LoadModel& model, LoadWorkspace* ws);
+void SettleIdleFreedoms(const LoadModel& model, LoadWorkspace<double>* ws);
 
 /// Where an idle freedom has got to: the discrete form of the above. Between one pose and the next,
 /// every link is displaced by d = [p_cm - p_cm'; log(R R'^T)], and
@@ -32,7 +32,7 @@ class IdlePositions {
   /// Takes the pose in ws as the one to come from.
   void Remember(const TreeWorkspace<double>& ws);
   /// Moves q along the idle freedoms until the above holds; ws is left at q, closed to `tolerance`.
-  void Settle(double tolerance, DependentSolver* dependents, TreeWorkspace<double>* ws,
+  void Settle(double tolerance, DependentSolver<double>* dependents, TreeWorkspace<double>* ws,
               VectorXd* q) const;
 
  private:
@@ -42,6 +42,6 @@ class IdlePositions {
 
 /// How much a unit rate of the k-th idle freedom shifts the centre of gravity of any link, in
 /// characteristic lengths: above roundoff, the loads depend on a motion that no drive prescribes.
-double IdleShift(const LoadModel& model, const LoadWorkspace& ws, int k);
+double IdleShift(const LoadModel& model, const LoadWorkspace<double>& ws, int k);
 
 }  // namespace vmech

@@ -64,7 +64,7 @@ Vector6d HandWeights(const LoadStudy& study, double length) {
 /// The idle freedoms must not matter to the loads; the hand must reach every freedom.
 void RequirePrescribed(const LoadStudy& study, PreparedStudy* prepared) {
   const LoadModel& model = prepared->model;
-  LoadWorkspace ws(model);
+  LoadWorkspace<double> ws(model);
   if (ws.motions.size() == 0) return;
   EvaluatePose(model.tree, prepared->mobility.q_general, &ws.tree);
   ws.dependents.Factor(ws.tree);

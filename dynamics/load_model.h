@@ -27,7 +27,6 @@ PreparedStudy PrepareStudy(const LoadStudy& study);
 /// between them the drive moves in smaller steps where a full one would be too long to be sure of
 /// the branch.
 /// @throws std::runtime_error naming pose and time where the motion cannot be followed.
-std::vector<PoseInput> TrackMotion(const LoadStudy& study, const PreparedStudy& prepared,
-                                   double closure_tolerance);
+Motion TrackMotion(const LoadStudy& study, const PreparedStudy& prepared, double closure_tolerance);
 
 }  // namespace vmech

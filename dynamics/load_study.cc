@@ -10,6 +10,7 @@
 
 #include "vmech/dynamics/external_loads.h"
 #include "vmech/dynamics/load_model.h"
+#include "vmech/kinematics/packet.h"
 
 namespace vmech {
 namespace {
@@ -17,10 +18,10 @@ namespace {
 constexpr size_t kChunk = 64;             // poses a thread takes at a time
 constexpr double kNearDeadCentre = 1e-8;  // pivots are squares; looked at closely below this
 
-void RequireInsideTables(const LoadModel& model, const std::vector<PoseInput>& inputs) {
-  for (size_t i = 0; i < inputs.size(); ++i) {
+void RequireInsideTables(const LoadModel& model, const Motion& motion) {
+  for (size_t i = 0; i < motion.size(); ++i) {
     for (const ExternalLoad& load : model.external) {
-      const double at = TableArgument(load, inputs[i]);
+      const double at = TableArgument(model, load, motion, i);
       if (!OutsideTable(load, at)) continue;
       throw std::invalid_argument(fmt::format(
           "pose {}: the table of the external load on link '{}' covers {:.6g} to {:.6g}, but "
@@ -34,41 +35,60 @@ void RequireInsideTables(const LoadModel& model, const std::vector<PoseInput>& i
 /// Evaluates all poses on several threads; each pose depends on its own input only.
 class ParallelEvaluation {
  public:
-  ParallelEvaluation(const LoadModel& model, const std::vector<PoseInput>& inputs,
-                     const LoadStudyOptions& options, std::vector<PoseLoads>* poses)
-      : model_(model), inputs_(inputs), options_(options), poses_(*poses) {}
+  ParallelEvaluation(const LoadModel& model, const Motion& motion, const LoadStudyOptions& options,
+                     LoadStudyResult* result)
+      : model_(model),
+        motion_(motion),
+        options_(options),
+        memory_(result->memory.get()),
+        poses_(result->poses) {}
 
   void Run() {
-    const size_t chunks = (inputs_.size() + kChunk - 1) / kChunk;
+    const size_t chunks = (motion_.size() + kChunk - 1) / kChunk;
     const size_t helpers = std::min<size_t>(options_.threads, std::max<size_t>(chunks, 1)) - 1;
     std::vector<std::thread> threads;
     for (size_t i = 0; i < helpers; ++i) threads.emplace_back([this] { Work(false); });
     Work(true);
     for (std::thread& thread : threads) thread.join();
     if (stopped_) throw std::runtime_error("the study was stopped before its end");
-    if (dead_centre_ < inputs_.size()) ReportDeadCentre(dead_centre_);
+    if (dead_centre_ < motion_.size()) ReportDeadCentre(dead_centre_);
   }
 
  private:
   void Work(bool reports) {
-    LoadWorkspace ws(model_);
+    LoadWorkspace<double> ws(model_);
+    LoadWorkspace<Packet> packet_ws(model_);
+    const bool in_packets = RunsInPackets(model_);
     for (;;) {
       const size_t begin = next_.fetch_add(kChunk);
-      if (begin >= inputs_.size() || stopped_) return;
-      const size_t end = std::min(begin + kChunk, inputs_.size());
-      for (size_t i = begin; i < end; ++i) Evaluate(i, &ws);
+      if (begin >= motion_.size() || stopped_) return;
+      const size_t end = std::min(begin + kChunk, motion_.size());
+      for (size_t i = begin; i < end;) {
+        if (in_packets && i + Packet::kLanes <= end && Evaluate(i, &packet_ws)) {
+          i += Packet::kLanes;
+        } else if (Evaluate(i, &ws)) {
+          ++i;
+        } else {
+          RememberDeadCentre(i++);
+        }
+      }
       done_ += end - begin;
       if (reports && options_.progress && !options_.progress(done_)) stopped_ = true;
     }
   }
 
-  void Evaluate(size_t i, LoadWorkspace* ws) {
-    SizePoseLoads(model_, &poses_[i]);
-    if (EvaluatePoseLoads(model_, inputs_[i], ws, &poses_[i])) {
-      EvaluateLinkMotions(model_, *ws, &poses_[i]);
-      return;
+  template <typename T>
+  bool Evaluate(size_t i, LoadWorkspace<T>* ws) {
+    if (!EvaluatePoseLoads(model_, motion_, i, ws)) return false;
+    for (int lane = 0; lane < kLanesOf<T>; ++lane) {
+      poses_[i + lane] = MakePoseLoads(model_, options_.link_motions, memory_);
     }
-    // The first dead centre, whichever thread finds it.
+    StorePoseLoads(model_, motion_, i, *ws, &poses_[i]);
+    return true;
+  }
+
+  /// The first dead centre, whichever thread finds it.
+  void RememberDeadCentre(size_t i) {
     size_t first = dead_centre_;
     while (i < first && !dead_centre_.compare_exchange_weak(first, i)) {
     }
@@ -78,17 +98,28 @@ class ParallelEvaluation {
     throw std::runtime_error(fmt::format(
         "pose {} (t = {:.6g} s) is a dead centre: the drive does not determine how the mechanism "
         "moves on, and no drive force holds it. Drive another joint, or leave this pose out",
-        i, inputs_[i].time));
+        i, motion_.times[i]));
   }
 
   const LoadModel& model_;
-  const std::vector<PoseInput>& inputs_;
+  const Motion& motion_;
   const LoadStudyOptions& options_;
-  std::vector<PoseLoads>& poses_;
+  PoseMemory* memory_;
+  PoseArray<PoseLoads>& poses_;
   std::atomic<size_t> next_{0}, done_{0};
   std::atomic<size_t> dead_centre_{std::numeric_limits<size_t>::max()};
   std::atomic<bool> stopped_{false};
 };
+
+void SizePoses(const LoadModel& model, const LoadStudyOptions& options, size_t count,
+               LoadStudyResult* result) {
+  const Mechanism& mechanism = model.tree.mechanism;
+  const size_t links = options.link_motions ? mechanism.links.size() : 0;
+  const size_t each = PoseLoads::Size(model.drives.size(), mechanism.joints.size(), links);
+  result->memory =
+      std::make_shared<PoseMemory>(PoseMemory::Rounded(count * sizeof(PoseLoads)) + count * each);
+  result->poses = PoseArray<PoseLoads>(count, PoseAllocator<PoseLoads>(result->memory.get()));
+}
 
 /// Poses at which certainty is judged: evenly spread, a dozen or so.
 std::vector<size_t> JudgedPoses(size_t count) {
@@ -101,11 +132,10 @@ std::vector<size_t> JudgedPoses(size_t count) {
 
 /// What statics leaves open at any pose it leaves open; singular counts only if it is so
 /// everywhere.
-std::vector<JointCertainty> JudgeStudy(const LoadModel& model,
-                                       const std::vector<PoseInput>& inputs) {
+std::vector<JointCertainty> JudgeStudy(const LoadModel& model, const Motion& motion) {
   std::vector<JointCertainty> verdict;
-  for (size_t i : JudgedPoses(inputs.size())) {
-    const auto here = JudgeCertainty(model.tree, model.partition, inputs[i].q);
+  for (size_t i : JudgedPoses(motion.size())) {
+    const auto here = JudgeCertainty(model.tree, model.partition, motion.q(i));
     if (verdict.empty()) {
       verdict = here;
       continue;
@@ -121,8 +151,7 @@ std::vector<JointCertainty> JudgeStudy(const LoadModel& model,
   return verdict;
 }
 
-void Summarise(const LoadModel& model, const std::vector<PoseInput>& inputs,
-               LoadStudyResult* result) {
+void Summarise(const LoadModel& model, const Motion& motion, LoadStudyResult* result) {
   size_t jammed = 0;
   for (size_t i = 0; i < result->poses.size(); ++i) {
     const PoseLoads& pose = result->poses[i];
@@ -130,7 +159,7 @@ void Summarise(const LoadModel& model, const std::vector<PoseInput>& inputs,
     result->max_power_error = std::max(result->max_power_error, pose.power_error);
     jammed += pose.jammed;
     if (pose.smallest_pivot < kNearDeadCentre &&
-        DistanceFromDeadCentre(model.tree, model.partition, inputs[i].q) < kSingularTolerance) {
+        DistanceFromDeadCentre(model.tree, model.partition, motion.q(i)) < kSingularTolerance) {
       result->singular_poses.push_back(i);
     }
   }
@@ -148,6 +177,17 @@ void Summarise(const LoadModel& model, const std::vector<PoseInput>& inputs,
 }
 
 }  // namespace
+
+PoseLoads::PoseLoads(size_t drive_count, size_t joint_count, size_t link_count, PoseMemory* memory)
+    : drives(drive_count, PoseAllocator<DriveSample>(memory)),
+      joints(joint_count, PoseAllocator<JointSample>(memory)),
+      links(link_count, PoseAllocator<LinkMotion>(memory)) {}
+
+size_t PoseLoads::Size(size_t drive_count, size_t joint_count, size_t link_count) {
+  return PoseMemory::Rounded(drive_count * sizeof(DriveSample)) +
+         PoseMemory::Rounded(joint_count * sizeof(JointSample)) +
+         PoseMemory::Rounded(link_count * sizeof(LinkMotion));
+}
 
 void LoadStudyOptions::Validate() const {
   if (threads < 1 || threads > 64) {
@@ -171,13 +211,13 @@ std::string LoadStudyResult::BriefReport() const {
 LoadStudyResult RunLoadStudy(const LoadStudy& study, const LoadStudyOptions& options) {
   options.Validate();
   PreparedStudy prepared = PrepareStudy(study);
-  const std::vector<PoseInput> inputs = TrackMotion(study, prepared, options.closure_tolerance);
-  RequireInsideTables(prepared.model, inputs);
+  const Motion motion = TrackMotion(study, prepared, options.closure_tolerance);
+  RequireInsideTables(prepared.model, motion);
 
   LoadStudyResult result;
-  result.poses.resize(inputs.size());
-  ParallelEvaluation(prepared.model, inputs, options, &result.poses).Run();
-  result.certainty = JudgeStudy(prepared.model, inputs);
+  SizePoses(prepared.model, options, motion.size(), &result);
+  ParallelEvaluation(prepared.model, motion, options, &result).Run();
+  result.certainty = JudgeStudy(prepared.model, motion);
   result.mobility = prepared.mobility.mobility;
   result.redundant_equations = prepared.mobility.redundant;
   for (const Loop& loop : prepared.model.tree.loops) {
@@ -186,7 +226,7 @@ LoadStudyResult RunLoadStudy(const LoadStudy& study, const LoadStudyOptions& opt
   result.idle = prepared.idle;
   result.norm_length = study.norm_length > 0 ? study.norm_length : prepared.model.tree.length;
   result.warnings = prepared.warnings;
-  Summarise(prepared.model, inputs, &result);
+  Summarise(prepared.model, motion, &result);
   return result;
 }
 

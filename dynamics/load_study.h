@@ -1,11 +1,13 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "vmech/dynamics/certainty.h"
+#include "vmech/dynamics/pose_memory.h"
 #include "vmech/dynamics/rule.h"
 #include "vmech/kinematics/motion_law.h"
 #include "vmech/mechanisms/mechanism.h"
@@ -64,6 +66,7 @@ struct LoadStudyOptions {
   int threads = 1;                   ///< 1..64; the result does not depend on it
   double closure_tolerance = 1e-13;  ///< largest loop error that counts as closed, of the
                                      ///< characteristic length and of 1 rad
+  bool link_motions = true;          ///< whether PoseLoads::links is wanted
   /// Called now and then with the number of poses done; false stops the study.
   std::function<bool(size_t done)> progress;
 
@@ -80,20 +83,33 @@ struct LinkMotion {
                Vector3d::Zero();  ///< acceleration of Lo [m/s^2], angular acceleration [rad/s^2]
 };
 
+/// A motor, and the force that it exerts [N] or [N m].
+struct DriveSample : MotionSample {
+  double force = 0;
+};
+
+/// A joint, and the wrench which its first link exerts on the second, at the second anchor's
+/// origin, in the axes of the first anchor.
+struct JointSample : Wrenchd {
+  Vector3d position = Vector3d::Zero();  ///< coordinates of its freedoms, unwrapped
+  Vector3d rate = Vector3d::Zero();
+};
+
 /// One pose of the study.
 struct PoseLoads {
+  PoseLoads() = default;
+  /// Room for the results of one pose.
+  PoseLoads(size_t drive_count, size_t joint_count, size_t link_count, PoseMemory* memory);
+  /// What that takes of the memory, in bytes.
+  static size_t Size(size_t drive_count, size_t joint_count, size_t link_count);
+
   double time = 0;
-  std::vector<MotionSample> drives;  ///< of each joint drive
-  std::vector<double> drive_forces;  ///< what each motor exerts [N] or [N m]
-  Wrenchd hand;                      ///< w_d: what the hand does to the mechanism at Go, world axes
-  double hand_error = 0;             ///< distance that the hand is off the grasp frame [m]
-  /// Per joint of the mechanism: the wrench which the first link exerts on the second, at the
-  /// second anchor's origin, in the axes of the first anchor.
-  std::vector<Wrenchd> joints;
-  std::vector<Vector3d> joint_positions;  ///< coordinates of each joint's freedoms, unwrapped
-  std::vector<Vector3d> joint_rates;
-  std::vector<LinkMotion> links;
-  double power = 0;        ///< of the drives and the hand [W]
+  PoseArray<DriveSample> drives;  ///< of each joint drive
+  Wrenchd hand;                   ///< w_d: what the hand does to the mechanism at Go, world axes
+  double hand_error = 0;          ///< distance that the hand is off the grasp frame [m]
+  PoseArray<JointSample> joints;  ///< of each joint of the mechanism
+  PoseArray<LinkMotion> links;    ///< empty if LoadStudyOptions::link_motions is off
+  double power = 0;               ///< of the drives and the hand [W]
   double power_error = 0;  ///< power in, less d/dt energy and losses, over the largest of its terms
   /// sin^2 of the angle by which the drive's hold on the mechanism is short of none; 0 at a dead
   /// centre.
@@ -105,7 +121,9 @@ struct PoseLoads {
 };
 
 struct LoadStudyResult {
-  std::vector<PoseLoads> poses;
+  /// Behind the arrays of `poses`. Copy a pose to keep it for longer than the result.
+  std::shared_ptr<PoseMemory> memory;
+  PoseArray<PoseLoads> poses;
   std::vector<JointCertainty> certainty;  ///< per joint; `singular` only if it is so at every pose
   std::vector<size_t> singular_poses;     ///< indices of poses at or very near a dead centre
   int mobility = 0;

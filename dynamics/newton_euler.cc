@@ -2,17 +2,18 @@
 
 #include "vmech/kinematics/forward_kinematics.h"
 #include "vmech/kinematics/jacobian.h"
+#include "vmech/kinematics/packet.h"
 
 namespace vmech {
 namespace {
 
 /// Wrench about Bo that moves a node against its inertia and gravity.
 template <typename T>
-Wrench<T> InertiaWrench(const TreeNode& node, const NodeState<T>& s, const Vector3<T>& gravity_W) {
+Wrench<T> InertiaWrench(const TreeNode& node, const NodeState<T>& s, const Vector3d& gravity_W) {
   const Matrix3<T>& R = s.X_WB.R;
   const Vector3<T> c = R * node.p_BoBcm.cast<T>();
   const Vector3<T> a_cm = s.a + s.alpha.cross(c) + s.w.cross(s.w.cross(c));
-  const Vector3<T> f = node.mass * (a_cm - gravity_W);
+  const Vector3<T> f = node.mass * (a_cm - gravity_W.cast<T>());
   const Vector3<T> w_B = R.transpose() * s.w;
   const Vector3<T> alpha_B = R.transpose() * s.alpha;
   const Matrix3<T> I = node.I_Bcm.cast<T>();
@@ -24,7 +25,7 @@ Wrench<T> InertiaWrench(const TreeNode& node, const NodeState<T>& s, const Vecto
 }  // namespace
 
 template <typename T>
-void RecursiveNewtonEuler(const KinematicTree& tree, const Vector3<T>& gravity_W,
+void RecursiveNewtonEuler(const KinematicTree& tree, const Vector3d& gravity_W,
                           const Wrench<T>* applied, TreeWorkspace<T>* ws) {
   for (size_t i = 0; i < tree.nodes.size(); ++i) {
     const TreeNode& node = tree.nodes[i];
@@ -96,9 +97,12 @@ VectorXd BiasForces(const KinematicTree& tree, const VectorXd& q, const VectorXd
   return h;
 }
 
-template void RecursiveNewtonEuler<double>(const KinematicTree&, const Vector3d&, const Wrenchd*,
-                                           TreeWorkspace<double>*);
-template void GeneralisedForces<double>(const KinematicTree&, const TreeWorkspace<double>&,
-                                        double*);
+#define VMECH_INSTANTIATE(T)                                                                     \
+  template void RecursiveNewtonEuler<T>(const KinematicTree&, const Vector3d&, const Wrench<T>*, \
+                                        TreeWorkspace<T>*);                                      \
+  template void GeneralisedForces<T>(const KinematicTree&, const TreeWorkspace<T>&, T*);
+VMECH_INSTANTIATE(double)
+VMECH_INSTANTIATE(Packet)
+#undef VMECH_INSTANTIATE
 
 }  // namespace vmech

@@ -12,7 +12,7 @@ namespace vmech {
 /// about Bo, world axes. Needs w, alpha, a and X_WB; writes NodeState::F_Bo. `applied` [nodes] are
 /// the wrenches from outside on each node about Bo, world axes.
 template <typename T>
-void RecursiveNewtonEuler(const KinematicTree& tree, const Vector3<T>& gravity_W,
+void RecursiveNewtonEuler(const KinematicTree& tree, const Vector3d& gravity_W,
                           const Wrench<T>* applied, TreeWorkspace<T>* ws);
 
 /// The share of F_Bo along each freedom: the generalised forces tau [nv] that the joints' drives,

@@ -21,7 +21,7 @@ KinematicTree CutThroughLinks(KinematicTree tree) {
 }
 
 /// Rows of the drives: the grasp's Jacobian, or one unit row for each motor.
-MatrixXd DriveRows(const LoadModel& model, const LoadWorkspace& ws) {
+MatrixXd DriveRows(const LoadModel& model, const LoadWorkspace<double>& ws) {
   if (model.hand) {
     MatrixXd J(6, model.tree.nv);
     PointJacobian(model.tree, ws.tree, GraspNode(model), GraspPose(model, ws.tree).p, &J);
@@ -43,7 +43,7 @@ VectorXd MinimumNormWrenches(const MatrixXd& J, const MatrixXd& C, const VectorX
   return MinimumNormSolution(A, tau);
 }
 
-void SolvePaperJoint(const LoadModel& model, LoadWorkspace* ws, PoseLoads* out) {
+void SolvePaperJoint(const LoadModel& model, LoadWorkspace<double>* ws) {
   const KinematicTree through = CutThroughLinks(model.tree);
   TreeWorkspace<double> full(through);
   full.nodes = ws->tree.nodes;
@@ -53,12 +53,12 @@ void SolvePaperJoint(const LoadModel& model, LoadWorkspace* ws, PoseLoads* out) 
   const VectorXd x =
       MinimumNormWrenches(J, DenseLoopJacobian(through, full), ws->tau - ws->passive);
   if (model.hand) {
-    out->hand = {};
-    out->hand.force = x.head<3>();
-    if (J.rows() == 6) out->hand.moment = x.segment<3>(3);
+    ws->hand = {};
+    ws->hand.force = x.head<3>();
+    if (J.rows() == 6) ws->hand.moment = x.segment<3>(3);
     const Vector3d p_WG = GraspPose(model, ws->tree).p;
     for (int n = GraspNode(model); n >= 0; n = model.tree.nodes[n].parent) {
-      full.nodes[n].F_Bo -= out->hand.ShiftedBy(p_WG - full.nodes[n].X_WB.p);
+      full.nodes[n].F_Bo -= ws->hand.ShiftedBy(p_WG - full.nodes[n].X_WB.p);
     }
   }
   const VectorXd w_cut = x.tail(through.rows);

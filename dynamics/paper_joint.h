@@ -15,6 +15,6 @@ VectorXd MinimumNormWrenches(const MatrixXd& J, const MatrixXd& C, const VectorX
 
 /// Solves ws->tau - ws->passive for all wrenches of a pose in this way; applies them to F_Bo and
 /// writes those of the cut joints.
-void SolvePaperJoint(const LoadModel& model, LoadWorkspace* ws, PoseLoads* out);
+void SolvePaperJoint(const LoadModel& model, LoadWorkspace<double>* ws);
 
 }  // namespace vmech

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vmech/kinematics/packet.h"
+
 namespace vmech {
 namespace {
 
@@ -21,8 +23,10 @@ bool IsTranslation(JointType type, int freedom) {
 
 }  // namespace
 
-double PassiveForce(const Passive& passive, double dry_friction, double position, double rate) {
-  const double direction = rate > 0 ? 1.0 : rate < 0 ? -1.0 : 0.0;
+template <typename T>
+T PassiveForce(const Passive& passive, const T& dry_friction, const T& position, const T& rate) {
+  const T zero(0);
+  const T direction = Select(rate > zero, T(1), Select(rate < zero, T(-1), zero));
   return -passive.stiffness * (position - passive.rest) - passive.viscous * rate -
          dry_friction * direction;
 }
@@ -41,18 +45,35 @@ bool HasLoadFriction(const Mechanism& mechanism) {
                      [](const Joint& joint) { return joint.load_friction.coefficient != 0; });
 }
 
-double DryFriction(const Joint& joint, int freedom, const Wrenchd& W_F) {
+template <typename T>
+T DryFriction(const Joint& joint, int freedom, const Wrench<T>& W_F) {
+  using std::abs;
+  using std::sqrt;
   const LoadFriction& friction = joint.load_friction;
-  double force = joint.passive[freedom].coulomb;
-  if (friction.coefficient == 0) return force;
-  // The load across the freedom's own direction; all of it where the joint has no axis.
-  const bool has_axis = joint.type != JointType::kSpherical && joint.type != JointType::kUniversal;
-  const double across = has_axis && joint.type != JointType::kPlanar
-                            ? std::hypot(W_F.force.x(), W_F.force.y())
-                        : joint.type == JointType::kPlanar ? std::abs(W_F.force.z())
-                                                           : W_F.force.norm();
+  const T constant(joint.passive[freedom].coulomb);
+  if (friction.coefficient == 0) return constant;
+  const Vector3<T>& f = W_F.force;
+  T across;  // the load across the freedom's own direction; all of it where the joint has no axis
+  switch (joint.type) {
+    case JointType::kSpherical:
+    case JointType::kUniversal:
+      across = sqrt(f.squaredNorm());
+      break;
+    case JointType::kPlanar:
+      across = abs(f.z());
+      break;
+    default:
+      across = sqrt(f.x() * f.x() + f.y() * f.y());
+  }
   const double lever = IsTranslation(joint.type, freedom) ? 1.0 : friction.radius;
-  return force + friction.coefficient * lever * across;
+  return constant + friction.coefficient * lever * across;
 }
+
+#define VMECH_INSTANTIATE(T)                                                \
+  template T PassiveForce<T>(const Passive&, const T&, const T&, const T&); \
+  template T DryFriction<T>(const Joint&, int, const Wrench<T>&);
+VMECH_INSTANTIATE(double)
+VMECH_INSTANTIATE(Packet)
+#undef VMECH_INSTANTIATE
 
 }  // namespace vmech

@@ -8,7 +8,8 @@ namespace vmech {
 
 /// Generalised force of a freedom's spring and friction: -k (q - rest) - c v - f sign(v), where f
 /// is the constant dry friction and what LoadFriction adds. Dry friction is zero at rest.
-double PassiveForce(const Passive& passive, double dry_friction, double position, double rate);
+template <typename T>
+T PassiveForce(const Passive& passive, const T& dry_friction, const T& position, const T& rate);
 
 /// Does any joint have springs or friction?
 bool HasPassive(const Mechanism& mechanism);
@@ -16,6 +17,7 @@ bool HasPassive(const Mechanism& mechanism);
 bool HasLoadFriction(const Mechanism& mechanism);
 
 /// Dry friction of one freedom of a joint that carries W_F, about M in axes of F.
-double DryFriction(const Joint& joint, int freedom, const Wrenchd& W_F);
+template <typename T>
+T DryFriction(const Joint& joint, int freedom, const Wrench<T>& W_F);
 
 }  // namespace vmech

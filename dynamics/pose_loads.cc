@@ -13,6 +13,7 @@
 #include "vmech/kinematics/forward_kinematics.h"
 #include "vmech/kinematics/jacobian.h"
 #include "vmech/kinematics/loops.h"
+#include "vmech/kinematics/packet.h"
 
 namespace vmech {
 namespace {
@@ -23,68 +24,110 @@ constexpr int kMaxFrictionIterations = 200;
 constexpr double kFirstRelaxation = 0.25;
 constexpr double kFrictionTolerance = 1e-13;  // change of the largest joint force, relative
 
-void CloseVelocities(const LoadModel& model, const PoseInput& input, LoadWorkspace* ws) {
+/// The rotation vector of a unit quaternion (w, x, y, z).
+template <typename T>
+Vector3<T> RotationVector(const T* wxyz) {
+  Vector3<T> turn;
+  Vector3d lanes[kLanesOf<T>];
+  for (int lane = 0; lane < kLanesOf<T>; ++lane) {
+    const Eigen::AngleAxisd rotation(Eigen::Quaterniond(Lane(wxyz[0], lane), Lane(wxyz[1], lane),
+                                                        Lane(wxyz[2], lane), Lane(wxyz[3], lane)));
+    lanes[lane] = rotation.angle() * rotation.axis();
+  }
+  for (int k = 0; k < 3; ++k) turn[k] = FromLanes<T>([&](int lane) { return lanes[lane][k]; });
+  return turn;
+}
+
+template <typename T>
+constexpr bool kSinglePose = kLanesOf<T> == 1;
+
+const MotionSample& DriveAt(const LoadModel& model, const Motion& motion, size_t pose, size_t k) {
+  return motion.drives[pose * model.drives.size() + k];
+}
+
+template <typename T>
+void GatherMotion(const LoadModel& model, const Motion& motion, size_t pose, LoadWorkspace<T>* ws) {
+  for (Eigen::Index i = 0; i < ws->q.size(); ++i) {
+    ws->q[i] = FromLanes<T>([&](int lane) { return motion.q(pose + lane)[i]; });
+  }
   const CoordinatePartition& partition = model.partition;
-  if (ws->motions.size() > 0) FreeMotions(ws->tree, &ws->dependents, &ws->motions);
-  if (model.hand) {
-    HandVelocities(model, input.hand, ws);
-  } else {
-    for (size_t k = 0; k < partition.driven.size(); ++k) {
-      ws->v[partition.driven[k]] = input.drives[k].velocity;
-    }
-    for (int v : partition.idle) ws->v[v] = 0;
+  for (size_t k = 0; k < model.drives.size(); ++k) {
+    const auto sample = [&](int lane) { return DriveAt(model, motion, pose + lane, k); };
+    ws->v[partition.driven[k]] = FromLanes<T>([&](int lane) { return sample(lane).velocity; });
+    ws->vdot[partition.driven[k]] =
+        FromLanes<T>([&](int lane) { return sample(lane).acceleration; });
+  }
+}
+
+template <typename T>
+void CloseVelocities(const LoadModel& model, const Motion& motion, size_t pose,
+                     LoadWorkspace<T>* ws) {
+  if constexpr (kSinglePose<T>) {
+    if (ws->motions.size() > 0) FreeMotions(ws->tree, &ws->dependents, &ws->motions);
+    if (model.hand) HandVelocities(model, motion.hand[pose], ws);
+  }
+  if (!model.hand) {
+    for (int v : model.partition.idle) ws->v[v] = T(0);
     ws->dependents.CompleteVelocities(ws->tree, ws->v.data());
-    if (!partition.idle.empty()) RemoveIdleMomentum(model, ws);
+  }
+  if constexpr (kSinglePose<T>) {
+    if (!model.partition.idle.empty()) RemoveIdleMomentum(model, ws);
   }
   ForwardVelocities(model.tree, ws->v.data(), &ws->tree);
 }
 
-void CloseAccelerations(const LoadModel& model, const PoseInput& input, LoadWorkspace* ws) {
+template <typename T>
+void CloseAccelerations(const LoadModel& model, const Motion& motion, size_t pose,
+                        LoadWorkspace<T>* ws) {
   const CoordinatePartition& partition = model.partition;
-  ForwardAccelerations<double>(model.tree, ws->v.data(), nullptr, &ws->tree);
+  ForwardAccelerations<T>(model.tree, ws->v.data(), nullptr, &ws->tree);
   LoopAccelerationBias(model.tree, &ws->tree);
-  for (size_t k = 0; k < partition.driven.size(); ++k) {
-    ws->vdot[partition.driven[k]] = model.hand ? 0 : input.drives[k].acceleration;
+  if (model.hand) {
+    for (int v : partition.driven) ws->vdot[v] = T(0);
   }
-  for (int v : partition.idle) ws->vdot[v] = 0;
+  for (int v : partition.idle) ws->vdot[v] = T(0);
   ws->dependents.CompleteAccelerations(ws->tree, ws->vdot.data());
-  ForwardAccelerations<double>(model.tree, ws->v.data(), ws->vdot.data(), &ws->tree);
-  if (!model.hand) return;
-  HandAccelerations(model, input.hand, ws);
-  ForwardAccelerations<double>(model.tree, ws->v.data(), ws->vdot.data(), &ws->tree);
+  ForwardAccelerations<T>(model.tree, ws->v.data(), ws->vdot.data(), &ws->tree);
+  if constexpr (kSinglePose<T>) {
+    if (!model.hand) return;
+    HandAccelerations(model, motion.hand[pose], ws);
+    ForwardAccelerations<T>(model.tree, ws->v.data(), ws->vdot.data(), &ws->tree);
+  }
 }
 
 /// Coordinates and rates of every joint, cut ones included.
-void JointMotions(const LoadModel& model, const PoseInput& input, const LoadWorkspace& ws,
-                  PoseLoads* out) {
+template <typename T>
+void JointMotions(const LoadModel& model, const Motion& motion, size_t pose, LoadWorkspace<T>* ws) {
   for (const TreeNode& node : model.tree.nodes) {
     if (node.v < 0) continue;
-    Vector3d& position = out->joint_positions[node.joint];
-    Vector3d& rate = out->joint_rates[node.joint];
+    JointLoad<T>& joint = ws->loads[node.joint];
     if (node.motion == NodeMotion::kSpherical) {
-      const double* c = input.q.data() + node.q;
-      const Eigen::AngleAxisd turn(Eigen::Quaterniond(c[0], c[1], c[2], c[3]));
-      position = turn.angle() * turn.axis();
-      rate = ws.v.segment<3>(node.v);
+      joint.position = RotationVector<T>(ws->q.data() + node.q);
+      for (int k = 0; k < 3; ++k) joint.rate[k] = ws->v[node.v + k];
     } else {
-      position[node.freedom] = input.q[node.q];
-      rate[node.freedom] = ws.v[node.v];
+      joint.position[node.freedom] = ws->q[node.q];
+      joint.rate[node.freedom] = ws->v[node.v];
     }
   }
-  for (size_t l = 0; l < model.tree.loops.size(); ++l) {
-    const int joint = model.tree.loops[l].joint;
-    out->joint_positions[joint] = input.cut_positions[l];
-    out->joint_rates[joint] = CutJointRates(model.tree, ws.tree, static_cast<int>(l));
+  const size_t loops = model.tree.loops.size();
+  for (size_t l = 0; l < loops; ++l) {
+    JointLoad<T>& joint = ws->loads[model.tree.loops[l].joint];
+    for (int k = 0; k < 3; ++k) {
+      joint.position[k] = FromLanes<T>(
+          [&](int lane) { return motion.cut_positions[(pose + lane) * loops + l][k]; });
+    }
+    joint.rate = CutJointRates(model.tree, ws->tree, static_cast<int>(l));
   }
 }
 
-/// Springs and friction along every freedom, under the joint wrenches of `out`.
-void PassiveForces(const LoadModel& model, const PoseLoads& out, LoadWorkspace* ws) {
+/// Springs and friction along every freedom, under the joint wrenches of ws->loads.
+template <typename T>
+void PassiveForces(const LoadModel& model, LoadWorkspace<T>* ws) {
   auto force = [&](int joint_index, int freedom) {
     const Joint& joint = model.tree.mechanism.joints[joint_index];
-    const double dry = DryFriction(joint, freedom, out.joints[joint_index]);
-    return PassiveForce(joint.passive[freedom], dry, out.joint_positions[joint_index][freedom],
-                        out.joint_rates[joint_index][freedom]);
+    const JointLoad<T>& load = ws->loads[joint_index];
+    const T dry = DryFriction(joint, freedom, load.W_F);
+    return PassiveForce(joint.passive[freedom], dry, load.position[freedom], load.rate[freedom]);
   };
   for (const TreeNode& node : model.tree.nodes) {
     if (node.v < 0) continue;
@@ -92,46 +135,50 @@ void PassiveForces(const LoadModel& model, const PoseLoads& out, LoadWorkspace* 
     for (int k = 0; k < count; ++k) ws->passive[node.v + k] = force(node.joint, node.freedom + k);
   }
   for (size_t l = 0; l < model.tree.loops.size(); ++l) {
-    const CutJointFreedoms freedoms = FreedomsOfCutJoint(model.tree.loops[l], ws->tree.loops[l]);
-    Vector6d W_F = Vector6d::Zero();
+    const CutJointFreedoms<T> freedoms = FreedomsOfCutJoint(model.tree.loops[l], ws->tree.loops[l]);
+    Vector6<T> W_F = Vector6<T>::Zero();
     for (int k = 0; k < freedoms.count; ++k) {
       // A twist of unit rate against which the force does work; exact for the screw as well.
-      const Vector6d& S = freedoms.twist_F[k];
-      W_F += S / S.squaredNorm() * force(model.tree.loops[l].joint, k);
+      const Vector6<T>& S = freedoms.twist_F[k];
+      W_F += S * (force(model.tree.loops[l].joint, k) / S.squaredNorm());
     }
-    ws->cut_passive[l] = {W_F.head<3>(), W_F.tail<3>()};
+    ws->cut_passive[l] = {W_F.template head<3>(), W_F.template tail<3>()};
   }
 }
 
-void ApplyAt(int node, const Wrenchd& W, const Vector3d& p_W, LoadWorkspace* ws) {
+template <typename T>
+void ApplyAt(int node, const Wrench<T>& W, const Vector3<T>& p_W, LoadWorkspace<T>* ws) {
   if (node >= 0) ws->applied[node] += W.ShiftedBy(p_W - ws->tree.nodes[node].X_WB.p);
 }
 
-void GatherApplied(const LoadModel& model, LoadWorkspace* ws) {
-  for (Wrenchd& w : ws->applied) w = {};
+template <typename T>
+void GatherApplied(const LoadModel& model, LoadWorkspace<T>* ws) {
+  for (Wrench<T>& w : ws->applied) w = Wrench<T>{};
   for (size_t i = 0; i < model.external.size(); ++i) {
     const ExternalLoad& load = model.external[i];
     const int node = model.tree.NodeOfLink(load.link);
     if (node < 0) continue;
-    const Vector3d p_W = ws->tree.nodes[node].X_WB * (model.tree.nodes[node].X_BL * load.p_L);
+    const Vector3d p_B = model.tree.nodes[node].X_BL * load.p_L;
+    const Vector3<T> p_W = ws->tree.nodes[node].X_WB * p_B.cast<T>();
     ApplyAt(node, ws->external_W[i], p_W, ws);
   }
   if (!model.has_passive) return;
   for (size_t l = 0; l < model.tree.loops.size(); ++l) {
-    const LoopState<double>& s = ws->tree.loops[l];
+    const LoopState<T>& s = ws->tree.loops[l];
     const JointPlacement& place = model.tree.placements[model.tree.loops[l].joint];
-    const Wrenchd W{s.R_WF * ws->cut_passive[l].force, s.R_WF * ws->cut_passive[l].moment};
+    const Wrench<T> W{s.R_WF * ws->cut_passive[l].force, s.R_WF * ws->cut_passive[l].moment};
     ApplyAt(place.second_node, W, s.p_WM, ws);
     ApplyAt(place.first_node, -W, s.p_WM, ws);
   }
 }
 
 /// Multipliers from what the dependent freedoms leave open, and everything they load.
-void SolveReactions(const LoadModel& model, LoadWorkspace* ws) {
+template <typename T>
+void SolveReactions(const LoadModel& model, LoadWorkspace<T>* ws) {
   ws->open = ws->tau - ws->passive;
   TreeJointWrenches(model.tree, ws->tree, &ws->joints);
   for (size_t l = 0; l < model.tree.loops.size(); ++l) {
-    const LoopState<double>& s = ws->tree.loops[l];
+    const LoopState<T>& s = ws->tree.loops[l];
     ws->joints[model.tree.loops[l].joint].W_M = {s.R_WF * ws->cut_passive[l].force,
                                                  s.R_WF * ws->cut_passive[l].moment};
   }
@@ -140,144 +187,194 @@ void SolveReactions(const LoadModel& model, LoadWorkspace* ws) {
   TreeJointWrenches(model.tree, ws->tree, &ws->joints);
   for (size_t l = 0; l < model.tree.loops.size(); ++l) {
     const Loop& loop = model.tree.loops[l];
-    const LoopState<double>& s = ws->tree.loops[l];
-    const Wrenchd W_F = WrenchOfMultipliers(loop, s, ws->mu.data() + loop.row);
+    const LoopState<T>& s = ws->tree.loops[l];
+    const Wrench<T> W_F = WrenchOfMultipliers(loop, s, ws->mu.data() + loop.row);
     ws->joints[loop.joint].W_M += {s.R_WF * W_F.force, s.R_WF * W_F.moment};
   }
 }
 
-/// One pass from the friction under the joint wrenches of `out` to new joint wrenches there.
-void EquilibriumPass(const LoadModel& model, LoadWorkspace* ws, PoseLoads* out) {
-  if (model.has_passive) PassiveForces(model, *out, ws);
+/// One pass from the friction under the joint wrenches of ws->loads to new joint wrenches there.
+template <typename T>
+void EquilibriumPass(const LoadModel& model, LoadWorkspace<T>* ws) {
+  if (model.has_passive) PassiveForces(model, ws);
   GatherApplied(model, ws);
-  RecursiveNewtonEuler<double>(model.tree, model.tree.mechanism.gravity_W, ws->applied.data(),
-                               &ws->tree);
+  RecursiveNewtonEuler<T>(model.tree, model.tree.mechanism.gravity_W, ws->applied.data(),
+                          &ws->tree);
   GeneralisedForces(model.tree, ws->tree, ws->tau.data());
-  if (!model.partition.idle.empty()) SettleIdleFreedoms(model, ws);
-  if (model.rule == ReactionRule::kPaperJoint) {
-    SolvePaperJoint(model, ws, out);
-  } else {
-    if (model.hand) ApplyHandWrench(model, ws, out);
-    SolveReactions(model, ws);
+  if constexpr (kSinglePose<T>) {
+    if (!model.partition.idle.empty()) SettleIdleFreedoms(model, ws);
+    if (model.hand && model.rule != ReactionRule::kPaperJoint) ApplyHandWrench(model, ws);
+    if (model.rule == ReactionRule::kPaperJoint) SolvePaperJoint(model, ws);
   }
+  if (model.rule != ReactionRule::kPaperJoint) SolveReactions(model, ws);
   for (size_t j = 0; j < ws->joints.size(); ++j) {
-    out->joints[j] = ws->joints[j].W_M.In(ws->joints[j].R_WF);
+    ws->loads[j].W_F = ws->joints[j].W_M.In(ws->joints[j].R_WF);
   }
 }
 
 /// Reactions and the friction that depends on them: x = G(x) for the joint forces x, by fixed-point
 /// iteration with Aitken's relaxation, x += beta r, r = G(x) - x, which converges where the plain
 /// iteration swings or creeps. Without a solution the mechanism locks itself.
-void FindEquilibrium(const LoadModel& model, LoadWorkspace* ws, PoseLoads* out) {
-  for (Wrenchd& w : out->joints) w = {};
-  out->jammed = false;
-  EquilibriumPass(model, ws, out);
-  if (!model.has_load_friction) return;
+bool IterateFriction(const LoadModel& model, LoadWorkspace<double>* ws) {
   double beta = kFirstRelaxation;
-  for (size_t j = 0; j < out->joints.size(); ++j) ws->friction_load[j] = out->joints[j].force;
+  for (size_t j = 0; j < ws->loads.size(); ++j) ws->friction_load[j] = ws->loads[j].W_F.force;
   for (int i = 0; i < kMaxFrictionIterations; ++i) {
-    EquilibriumPass(model, ws, out);
+    EquilibriumPass(model, ws);
     double change = 0, largest = 0, along = 0, across = 0;
-    for (size_t j = 0; j < out->joints.size(); ++j) {
-      const Vector3d r = out->joints[j].force - ws->friction_load[j];
+    for (size_t j = 0; j < ws->loads.size(); ++j) {
+      const Vector3d& force = ws->loads[j].W_F.force;
+      const Vector3d r = force - ws->friction_load[j];
       const Vector3d dr = r - ws->friction_residual[j];
       change = std::max(change, r.cwiseAbs().maxCoeff());
-      largest = std::max(largest, out->joints[j].force.cwiseAbs().maxCoeff());
+      largest = std::max(largest, force.cwiseAbs().maxCoeff());
       along += ws->friction_residual[j].dot(dr);
       across += dr.squaredNorm();
       ws->friction_residual[j] = r;
     }
-    if (change <= kFrictionTolerance * largest) return;
+    if (change <= kFrictionTolerance * largest) return true;
     if (i > 0 && across > 0) beta *= -along / across;
-    for (size_t j = 0; j < out->joints.size(); ++j) {
+    for (size_t j = 0; j < ws->loads.size(); ++j) {
       ws->friction_load[j] += beta * ws->friction_residual[j];
-      out->joints[j].force = ws->friction_load[j];
+      ws->loads[j].W_F.force = ws->friction_load[j];
     }
   }
-  out->jammed = true;
+  return false;
 }
 
-void DriveForces(const LoadModel& model, LoadWorkspace* ws, PoseLoads* out) {
+template <typename T>
+void FindEquilibrium(const LoadModel& model, LoadWorkspace<T>* ws) {
+  for (JointLoad<T>& load : ws->loads) load.W_F = Wrench<T>{};
+  EquilibriumPass(model, ws);
+  if constexpr (kSinglePose<T>) {
+    ws->jammed = model.has_load_friction && !IterateFriction(model, ws);
+  }
+}
+
+template <typename T>
+void DriveForces(const LoadModel& model, LoadWorkspace<T>* ws) {
   GeneralisedForces(model.tree, ws->tree, ws->tau.data());
   for (size_t k = 0; k < model.drives.size(); ++k) {
     const int v = model.partition.driven[k];
-    out->drive_forces[k] = ws->tau[v] - ws->passive[v];
+    ws->drive_forces[k] = ws->tau[v] - ws->passive[v];
+  }
+}
+
+/// Motion of a link's drawing frame, world axes.
+template <typename T>
+void StoreLinkMotion(const TreeNode& node, const NodeState<T>& s, int link, PoseLoads* poses) {
+  const Pose<T> X_WL = s.X_WB * node.X_BL.cast<T>();
+  const Vector3<T> r = X_WL.p - s.X_WB.p;
+  const Vector3<T> v = s.v + s.w.cross(r);
+  const Vector3<T> a = s.a + s.alpha.cross(r) + s.w.cross(s.w.cross(r));
+  for (int lane = 0; lane < kLanesOf<T>; ++lane) {
+    LinkMotion& motion = poses[lane].links[link];
+    motion.X_WL = {Lane(X_WL.R, lane), Lane(X_WL.p, lane)};
+    motion.v = Lane(v, lane);
+    motion.w = Lane(s.w, lane);
+    motion.a = Lane(a, lane);
+    motion.alpha = Lane(s.alpha, lane);
   }
 }
 
 }  // namespace
 
-LoadWorkspace::LoadWorkspace(const LoadModel& model)
+template <typename T>
+LoadWorkspace<T>::LoadWorkspace(const LoadModel& model)
     : tree(model.tree),
       dependents(model.tree, model.partition),
       reactions(model.tree, model.partition, model.compliances),
       joints(model.tree.mechanism.joints.size()),
       applied(model.tree.nodes.size()),
       cut_passive(model.tree.loops.size()),
-      v(VectorXd::Zero(model.tree.nv)),
-      vdot(VectorXd::Zero(model.tree.nv)),
-      tau(VectorXd::Zero(model.tree.nv)),
-      passive(VectorXd::Zero(model.tree.nv)),
-      open(VectorXd::Zero(model.tree.nv)),
-      mu(VectorXd::Zero(model.tree.rows)),
+      external_W(model.external.size()),
+      q(VectorX::Zero(model.tree.nq)),
+      v(VectorX::Zero(model.tree.nv)),
+      vdot(VectorX::Zero(model.tree.nv)),
+      tau(VectorX::Zero(model.tree.nv)),
+      passive(VectorX::Zero(model.tree.nv)),
+      open(VectorX::Zero(model.tree.nv)),
+      mu(VectorX::Zero(model.tree.rows)),
       friction_load(joints.size(), Vector3d::Zero()),
       friction_residual(joints.size(), Vector3d::Zero()),
-      external_W(model.external.size()) {
+      loads(joints.size(), {{}, Vector3<T>::Zero(), Vector3<T>::Zero()}),
+      drive_forces(model.drives.size(), T(0)) {
   const CoordinatePartition& p = model.partition;
   if (model.hand || !p.idle.empty()) {
     motions = MatrixXd::Zero(model.tree.nv, static_cast<int>(p.driven.size() + p.idle.size()));
   }
 }
 
-void SizePoseLoads(const LoadModel& model, PoseLoads* out) {
+PoseLoads MakePoseLoads(const LoadModel& model, bool link_motions, PoseMemory* memory) {
   const Mechanism& mechanism = model.tree.mechanism;
-  out->drives.resize(model.drives.size());
-  out->drive_forces.resize(model.drives.size());
-  out->joints.resize(mechanism.joints.size());
-  out->joint_positions.assign(mechanism.joints.size(), Vector3d::Zero());
-  out->joint_rates.assign(mechanism.joints.size(), Vector3d::Zero());
-  out->links.resize(mechanism.links.size());
+  const size_t links = link_motions ? mechanism.links.size() : 0;
+  return {model.drives.size(), mechanism.joints.size(), links, memory};
 }
 
-bool EvaluatePoseLoads(const LoadModel& model, const PoseInput& input, LoadWorkspace* ws,
-                       PoseLoads* out) {
-  EvaluatePose(model.tree, input.q, &ws->tree);
-  ws->dependents.Factor(ws->tree);
-  if (ws->dependents.undetermined() > 0) return false;
-  out->time = input.time;
-  out->drives = input.drives;
-  out->closure = LargestLoopError(model.tree, ws->tree);
-  out->smallest_pivot = ws->dependents.smallest_pivot();
-  if (model.hand) {
-    out->hand_error = (input.hand.X_WH.p - GraspPose(model, ws->tree).p).norm();
-  }
+bool RunsInPackets(const LoadModel& model) {
+  return !model.hand && model.partition.idle.empty() && !model.has_load_friction &&
+         model.rule != ReactionRule::kPaperJoint;
+}
 
-  CloseVelocities(model, input, ws);
-  CloseAccelerations(model, input, ws);
-  JointMotions(model, input, *ws, out);
-  EvaluateExternalLoads(model, input, *ws, &ws->external_W);
+template <typename T>
+bool EvaluatePoseLoads(const LoadModel& model, const Motion& motion, size_t pose,
+                       LoadWorkspace<T>* ws) {
+  GatherMotion(model, motion, pose, ws);
+  EvaluatePose(model.tree, ws->q.data(), &ws->tree);
+  ws->dependents.Factor(ws->tree);
+  if (!AllLanes(ws->dependents.smallest_pivot() > T(0))) return false;
+  ws->closure = LargestLoopError(model.tree, ws->tree);
+  CloseVelocities(model, motion, pose, ws);
+  CloseAccelerations(model, motion, pose, ws);
+  JointMotions(model, motion, pose, ws);
+  EvaluateExternalLoads(model, motion, pose, ws);
   JointFrames(model.tree, ws->tree, &ws->joints);
   ws->reactions.Factor(ws->tree, ws->joints);
-  FindEquilibrium(model, ws, out);
-  DriveForces(model, ws, out);
-  EvaluatePower(model, *ws, out);
+  FindEquilibrium(model, ws);
+  DriveForces(model, ws);
+  EvaluatePower(model, ws);
   return true;
 }
 
-void EvaluateLinkMotions(const LoadModel& model, const LoadWorkspace& ws, PoseLoads* out) {
-  for (size_t i = 0; i < out->links.size(); ++i) {
-    LinkMotion& motion = out->links[i];
-    motion = LinkMotion{};
-    const int index = model.tree.NodeOfLink(static_cast<int>(i));
+template <typename T>
+void StorePoseLoads(const LoadModel& model, const Motion& motion, size_t pose,
+                    const LoadWorkspace<T>& ws, PoseLoads* poses) {
+  for (int lane = 0; lane < kLanesOf<T>; ++lane) {
+    PoseLoads& out = poses[lane];
+    out.time = motion.times[pose + lane];
+    for (size_t k = 0; k < model.drives.size(); ++k) {
+      out.drives[k] = {DriveAt(model, motion, pose + lane, k), Lane(ws.drive_forces[k], lane)};
+    }
+    for (size_t j = 0; j < ws.loads.size(); ++j) {
+      const JointLoad<T>& load = ws.loads[j];
+      out.joints[j] = {{Lane(load.W_F.force, lane), Lane(load.W_F.moment, lane)},
+                       Lane(load.position, lane),
+                       Lane(load.rate, lane)};
+    }
+    out.power = Lane(ws.power, lane);
+    out.power_error = Lane(ws.power_error, lane);
+    out.smallest_pivot = Lane(ws.dependents.smallest_pivot(), lane);
+    out.closure = Lane(ws.closure, lane);
+    out.jammed = ws.jammed;
+  }
+  for (size_t link = 0; link < poses[0].links.size(); ++link) {
+    const int index = model.tree.NodeOfLink(static_cast<int>(link));
     if (index < 0) continue;
-    const NodeState<double>& s = ws.tree.nodes[index];
-    const Vector3d r = s.X_WB.R * model.tree.nodes[index].X_BL.p;
-    motion.X_WL = s.X_WB * model.tree.nodes[index].X_BL;
-    motion.w = s.w;
-    motion.v = s.v + s.w.cross(r);
-    motion.alpha = s.alpha;
-    motion.a = s.a + s.alpha.cross(r) + s.w.cross(s.w.cross(r));
+    StoreLinkMotion(model.tree.nodes[index], ws.tree.nodes[index], static_cast<int>(link), poses);
+  }
+  if constexpr (kSinglePose<T>) {
+    if (!model.hand) return;
+    poses->hand = ws.hand;
+    poses->hand_error = (motion.hand[pose].X_WH.p - GraspPose(model, ws.tree).p).norm();
   }
 }
+
+#define VMECH_INSTANTIATE(T)                                                                      \
+  template struct LoadWorkspace<T>;                                                               \
+  template bool EvaluatePoseLoads<T>(const LoadModel&, const Motion&, size_t, LoadWorkspace<T>*); \
+  template void StorePoseLoads<T>(const LoadModel&, const Motion&, size_t,                        \
+                                  const LoadWorkspace<T>&, PoseLoads*);
+VMECH_INSTANTIATE(double)
+VMECH_INSTANTIATE(Packet)
+#undef VMECH_INSTANTIATE
 
 }  // namespace vmech

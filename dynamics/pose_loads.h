@@ -24,46 +24,80 @@ struct LoadModel {
   bool has_load_friction = false;
 };
 
-/// Where the mechanism is and how it is driven at one pose.
-struct PoseInput {
-  double time = 0;
-  VectorXd q;                           ///< closed [nq]
-  std::vector<MotionSample> drives;     ///< of each joint drive
-  HandSample hand;                      ///< if a hand drives
-  std::vector<Vector3d> cut_positions;  ///< coordinates of each loop's cut joint, unwrapped
+/// A study's motion, pose by pose.
+struct Motion {
+  std::vector<double> times;
+  std::vector<double> coordinates;      ///< [poses * nq] of closed poses
+  std::vector<MotionSample> drives;     ///< [poses * drives]
+  std::vector<HandSample> hand;         ///< [poses] if a hand drives
+  std::vector<Vector3d> cut_positions;  ///< [poses * loops] of the cut joints, unwrapped
+
+  size_t size() const { return times.size(); }
+  Eigen::Map<const VectorXd> q(size_t pose) const {
+    const size_t nq = coordinates.size() / times.size();
+    return {coordinates.data() + pose * nq, static_cast<Eigen::Index>(nq)};
+  }
 };
 
-/// Memory for one thread, for one model that must outlive it.
+/// What a joint does and carries, in the axes of the anchor on its first link.
+template <typename T>
+struct JointLoad {
+  Wrench<T> W_F;        ///< what the first link exerts on the second, about the second anchor
+  Vector3<T> position;  ///< coordinates of its freedoms
+  Vector3<T> rate;
+};
+
+/// Memory for one thread, for one model that must outlive it. T is double for one pose at a time,
+/// or Packet for four in a row.
+template <typename T>
 struct LoadWorkspace {
+  using VectorX = Eigen::Matrix<T, Eigen::Dynamic, 1>;
+
   explicit LoadWorkspace(const LoadModel& model);
 
-  TreeWorkspace<double> tree;
-  DependentSolver dependents;
-  ReactionSolver reactions;
-  std::vector<JointState> joints;
-  std::vector<Wrenchd> applied;      ///< per node about Bo, from outside
-  std::vector<Wrenchd> cut_passive;  ///< per loop: springs and friction of the cut joint, in F
-  VectorXd v, vdot;
-  VectorXd tau;      ///< needed along each freedom
-  VectorXd passive;  ///< supplied by springs and friction
-  VectorXd open;     ///< what is left for drives and multipliers
-  VectorXd mu;       ///< multipliers of the cut joints
+  TreeWorkspace<T> tree;
+  DependentSolver<T> dependents;
+  ReactionSolver<T> reactions;
+  std::vector<JointState<T>> joints;
+  std::vector<Wrench<T>> applied;      ///< per node about Bo, from outside
+  std::vector<Wrench<T>> cut_passive;  ///< per loop: springs and friction of the cut joint, in F
+  std::vector<Wrench<T>> external_W;   ///< the external loads about their points, world axes
+  VectorX q, v, vdot;
+  VectorX tau;       ///< needed along each freedom
+  VectorX passive;   ///< supplied by springs and friction
+  VectorX open;      ///< what is left for drives and multipliers
+  VectorX mu;        ///< multipliers of the cut joints
   MatrixXd motions;  ///< [nv, independent]: free motions, where the hand or idle freedoms need them
   std::vector<Vector3d> friction_load, friction_residual;  ///< per joint, of the friction iteration
-  std::vector<Wrenchd> external_W;  ///< the external loads at this pose about their points, world
+
+  // What comes out, beside `tree`.
+  std::vector<JointLoad<T>> loads;  ///< per joint
+  std::vector<T> drive_forces;
+  Wrench<T> hand;  ///< w_d at Go, world axes
+  T power, power_error, closure;
+  bool jammed = false;
 };
 
-/// Velocities, accelerations, drive forces and the wrench of every joint at one closed pose, from
-/// scratch: the same input gives the same bits. `out` keeps its memory between calls. Everything in
-/// PoseLoads but `links`. Returns false at a dead centre, where the drive does not determine the
-/// motion; out is then not to be used.
-[[nodiscard]] bool EvaluatePoseLoads(const LoadModel& model, const PoseInput& input,
-                                     LoadWorkspace* ws, PoseLoads* out);
+/// Can a packet of poses be evaluated at once? Not where the hand, idle freedoms or friction under
+/// load ask for dense systems or iterations of each pose's own.
+bool RunsInPackets(const LoadModel& model);
 
-/// Motion of every link's drawing frame at the pose last evaluated.
-void EvaluateLinkMotions(const LoadModel& model, const LoadWorkspace& ws, PoseLoads* out);
+/// Velocities, accelerations, drive forces and the wrench of every joint at the closed poses
+/// `pose`, `pose` + 1, ... (as many as T has lanes), from scratch: the same input gives the same
+/// bits. Returns false if one of them is a dead centre, where the drive does not determine the
+/// motion; what ws holds is then not to be used.
+template <typename T>
+[[nodiscard]] bool EvaluatePoseLoads(const LoadModel& model, const Motion& motion, size_t pose,
+                                     LoadWorkspace<T>* ws);
 
-/// Makes room in `out` for a model's results.
-void SizePoseLoads(const LoadModel& model, PoseLoads* out);
+/// Room for a model's results at one pose, on the heap or in `memory`.
+PoseLoads MakePoseLoads(const LoadModel& model, bool link_motions = true,
+                        PoseMemory* memory = nullptr);
+
+/// Copies what was computed last to poses[0], poses[1], ... of MakePoseLoads (as many as T has
+/// lanes), with the motion of every link if there is room for it.
+template <typename T>
+void StorePoseLoads(const LoadModel& model, const Motion& motion, size_t pose,
+                    const LoadWorkspace<T>& ws, PoseLoads* poses);
 
 }  // namespace vmech

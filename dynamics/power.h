@@ -5,9 +5,10 @@
 namespace vmech {
 
 /// Power balance of one pose: drives + hand + external loads + springs and friction against d/dt of
-/// kinetic energy and height. Reads the drive forces of `out`, the node velocities and
+/// kinetic energy and height. Reads the drive forces, the node velocities and
 /// accelerations; joint wrenches have no part in it, so that it is a check on the whole. Writes
 /// power, power_error.
-void EvaluatePower(const LoadModel& model, const LoadWorkspace& ws, PoseLoads* out);
+template <typename T>
+void EvaluatePower(const LoadModel& model, LoadWorkspace<T>* ws);
 
 }  // namespace vmech

@@ -4,6 +4,7 @@
 
 #include "vmech/kinematics/forward_kinematics.h"
 #include "vmech/kinematics/loops.h"
+#include "vmech/kinematics/packet.h"
 
 namespace vmech {
 namespace {
@@ -24,19 +25,40 @@ constexpr Freedoms kFree[] = {
     {{false, false, false}, {false, false, false}},  // weld
 };
 
-/// R diag(d) R' = d_x 1 + (d_y - d_x) y y' + (d_z - d_x) z z'.
-Matrix3d InWorld(const Matrix3d& R, const Vector3d& d) {
-  Matrix3d D = ((d.z() - d.x()) * R.col(2)) * R.col(2).transpose();
-  if (d.y() != d.x()) D += ((d.y() - d.x()) * R.col(1)) * R.col(1).transpose();
-  D.diagonal().array() += d.x();
-  return D;
+/// A compliance D = isotropic 1 + sum over directions of extra a a' is never written out as a
+/// matrix: a wrench (f, m) at a cut loads the joint with (f, m + d x f), d from the joint to the
+/// cut, and with c = d x a every term of T' D T is a product of two vectors.
+template <typename T>
+struct Softness {
+  Vector3<T> axis;
+  double force, moment;
+};
+
+/// A += S(a).
+template <typename T>
+void AddCross(const Vector3<T>& a, Matrix3<T>* A) {
+  (*A)(0, 1) -= a.z();
+  (*A)(0, 2) += a.y();
+  (*A)(1, 0) += a.z();
+  (*A)(1, 2) -= a.x();
+  (*A)(2, 0) -= a.y();
+  (*A)(2, 1) += a.x();
 }
 
-/// S(d) A: the columns of A crossed by d.
-Matrix3d CrossColumns(const Vector3d& d, const Matrix3d& A) {
-  Matrix3d crossed;
-  for (int k = 0; k < 3; ++k) crossed.col(k) = d.cross(A.col(k));
-  return crossed;
+/// What a joint is soft about beyond its isotropic part: the y and z axes of F, or the axis that a
+/// universal joint holds its moment about.
+template <typename T, typename Visit>
+void ForEachDirection(const Joint& joint, const JointCompliance& compliance,
+                      const JointState<T>& state, const Visit& visit) {
+  if (joint.type == JointType::kUniversal) {
+    visit(Softness<T>{state.n_W, 0, compliance.moment.z()});
+  }
+  for (int k = 1; k < 3; ++k) {
+    const double force = compliance.force[k] - compliance.force.x();
+    const double moment =
+        joint.type == JointType::kUniversal ? 0 : compliance.moment[k] - compliance.moment.x();
+    if (force != 0 || moment != 0) visit(Softness<T>{state.R_WF.col(k), force, moment});
+  }
 }
 
 }  // namespace
@@ -60,60 +82,67 @@ std::vector<JointCompliance> CompliancesForRule(const KinematicTree& tree, React
   return compliances;
 }
 
-void JointFrames(const KinematicTree& tree, const TreeWorkspace<double>& ws,
-                 std::vector<JointState>* joints) {
+template <typename T>
+void JointFrames(const KinematicTree& tree, const TreeWorkspace<T>& ws,
+                 std::vector<JointState<T>>* joints) {
+  using std::sqrt;
   for (size_t j = 0; j < joints->size(); ++j) {
     const JointPlacement& place = tree.placements[j];
     const int a = place.first_node, b = place.second_node;
-    (*joints)[j].R_WF = a < 0 ? place.X_AF.R : Matrix3d(ws.nodes[a].X_WB.R * place.X_AF.R);
-    (*joints)[j].p_WM = b < 0 ? place.X_BM.p : ws.nodes[b].X_WB * place.X_BM.p;
+    const Matrix3<T> R_AF = place.X_AF.R.cast<T>();
+    const Vector3<T> p_BM = place.X_BM.p.cast<T>();
+    (*joints)[j].R_WF = a < 0 ? R_AF : Matrix3<T>(ws.nodes[a].X_WB.R * R_AF);
+    (*joints)[j].p_WM = b < 0 ? p_BM : ws.nodes[b].X_WB * p_BM;
     if (tree.mechanism.joints[j].type != JointType::kUniversal) continue;
-    const Vector3d y_M_W = PoseInWorld(ws, b, place.X_BM).R.col(1);
-    (*joints)[j].n_W = y_M_W.cross((*joints)[j].R_WF.col(0)).normalized();
+    const Vector3<T> y_M_W = PoseInWorld(ws, b, place.X_BM).R.col(1);
+    const Vector3<T> across = y_M_W.cross((*joints)[j].R_WF.col(0));
+    (*joints)[j].n_W = across / sqrt(across.squaredNorm());
   }
 }
 
-void TreeJointWrenches(const KinematicTree& tree, const TreeWorkspace<double>& ws,
-                       std::vector<JointState>* joints) {
+template <typename T>
+void TreeJointWrenches(const KinematicTree& tree, const TreeWorkspace<T>& ws,
+                       std::vector<JointState<T>>* joints) {
   for (size_t j = 0; j < joints->size(); ++j) {
     const int index = tree.placements[j].tree_node;
     if (index < 0) continue;
-    JointState& joint = (*joints)[j];
-    const NodeState<double>& node = ws.nodes[index];
-    const Wrenchd W = node.F_Bo.ShiftedBy(node.X_WB.p - joint.p_WM);
+    JointState<T>& joint = (*joints)[j];
+    const NodeState<T>& node = ws.nodes[index];
+    const Wrench<T> W = node.F_Bo.ShiftedBy(node.X_WB.p - joint.p_WM);
     joint.W_M = tree.nodes[index].reversed ? -W : W;
   }
 }
 
-void AddMultiplierWrenches(const KinematicTree& tree, const double* mu, TreeWorkspace<double>* ws) {
+template <typename T>
+void AddMultiplierWrenches(const KinematicTree& tree, const T* mu, TreeWorkspace<T>* ws) {
   for (size_t l = 0; l < tree.loops.size(); ++l) {
     const Loop& loop = tree.loops[l];
-    const LoopState<double>& s = ws->loops[l];
-    const Wrenchd W_F = WrenchOfMultipliers(loop, s, mu + loop.row);
-    const Wrenchd W{s.R_WF * W_F.force, s.R_WF * W_F.moment};
+    const LoopState<T>& s = ws->loops[l];
+    const Wrench<T> W_F = WrenchOfMultipliers(loop, s, mu + loop.row);
+    const Wrench<T> W{s.R_WF * W_F.force, s.R_WF * W_F.moment};
     for (const LoopNode& n : loop.path) {
-      NodeState<double>& node = ws->nodes[n.node];
-      const Wrenchd share = W.ShiftedBy(s.p_WM - node.X_WB.p);
+      NodeState<T>& node = ws->nodes[n.node];
+      const Wrench<T> share = W.ShiftedBy(s.p_WM - node.X_WB.p);
       node.F_Bo.force -= n.sign * share.force;
       node.F_Bo.moment -= n.sign * share.moment;
     }
   }
 }
 
-ReactionSolver::ReactionSolver(const KinematicTree& tree, const CoordinatePartition& partition,
-                               std::vector<JointCompliance> compliances)
+template <typename T>
+ReactionSolver<T>::ReactionSolver(const KinematicTree& tree, const CoordinatePartition& partition,
+                                  std::vector<JointCompliance> compliances)
     : tree_(tree),
       partition_(partition),
       compliances_(std::move(compliances)),
       loads_(tree.mechanism.joints.size()),
-      soft_force_W_(tree.mechanism.joints.size()),
-      soft_moment_W_(tree.mechanism.joints.size()),
       strain_W_(tree.loops.size()) {
   FindLoads();
   OrderUnknowns();
 }
 
-void ReactionSolver::FindLoads() {
+template <typename T>
+void ReactionSolver<T>::FindLoads() {
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
     const Loop& loop = tree_.loops[l];
     const int index = static_cast<int>(l);
@@ -135,15 +164,18 @@ void ReactionSolver::FindLoads() {
   }
 }
 
-int ReactionSolver::BlockIndex(int k, int l) {
+template <typename T>
+int ReactionSolver<T>::BlockIndex(int k, int l) {
   for (size_t i = 0; i < blocks_.size(); ++i) {
     if (blocks_[i].k == k && blocks_[i].l == l) return static_cast<int>(i);
   }
-  blocks_.push_back({k, l, Matrix6d::Zero()});
+  const Matrix3<T> zero = Matrix3<T>::Zero();
+  blocks_.push_back({k, l, zero, zero, zero, zero});
   return static_cast<int>(blocks_.size()) - 1;
 }
 
-void ReactionSolver::OrderUnknowns() {
+template <typename T>
+void ReactionSolver<T>::OrderUnknowns() {
   const size_t dependents = partition_.dependent.size();
   std::vector<int> first_loop(dependents, -1), last_loop(dependents, -1);
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
@@ -172,73 +204,104 @@ void ReactionSolver::OrderUnknowns() {
       first.push_back(row_position_[first_loop[u]]);
     }
   }
-  unknowns_.assign(first.size(), 0.0);
-  matrix_ = EnvelopeLdlt(first);
+  unknowns_.assign(first.size(), T(0));
+  matrix_ = EnvelopeLdlt<T>(first);
 }
 
-void ReactionSolver::Factor(const TreeWorkspace<double>& ws,
-                            const std::vector<JointState>& joints) {
-  for (size_t j = 0; j < joints.size(); ++j) {
-    if (loads_[j].empty()) continue;
-    soft_force_W_[j] = InWorld(joints[j].R_WF, compliances_[j].force);
-    soft_moment_W_[j] =
-        tree_.mechanism.joints[j].type == JointType::kUniversal
-            ? Matrix3d(compliances_[j].moment.z() * joints[j].n_W * joints[j].n_W.transpose())
-            : InWorld(joints[j].R_WF, compliances_[j].moment);
+template <typename T>
+void ReactionSolver<T>::Factor(const TreeWorkspace<T>& ws,
+                               const std::vector<JointState<T>>& joints) {
+  for (Block& block : blocks_) {
+    for (Matrix3<T>* A : {&block.A_ff, &block.A_fm, &block.A_mf, &block.A_mm}) A->setZero();
   }
-  for (Block& block : blocks_) block.A_W.setZero();
-  for (const Contribution& c : contributions_) {
-    // W_j = sign (f, m + d x f) for a wrench (f, m) at the cut, d from M of joint j to the cut:
-    //   A_ff = D_f - S_k D_m S_l,  A_fm = -S_k D_m,  A_mf = D_m S_l,  A_mm = D_m,  S = S(d).
-    const Load& k = loads_[c.joint][c.load_k];
-    const Load& l = loads_[c.joint][c.load_l];
-    const double sign = k.sign * l.sign;
-    const Vector3d d_k = ws.loops[k.loop].p_WM - joints[c.joint].p_WM;
-    const Vector3d d_l = ws.loops[l.loop].p_WM - joints[c.joint].p_WM;
-    const Matrix3d& D_m = soft_moment_W_[c.joint];
-    const Matrix3d D_m_S_l = -CrossColumns(d_l, D_m).transpose();
-    Matrix6d& A = blocks_[c.block].A_W;
-    A.topLeftCorner<3, 3>() += sign * (soft_force_W_[c.joint] - CrossColumns(d_k, D_m_S_l));
-    A.topRightCorner<3, 3>() -= sign * CrossColumns(d_k, D_m);
-    A.bottomLeftCorner<3, 3>() += sign * D_m_S_l;
-    A.bottomRightCorner<3, 3>() += sign * D_m;
-  }
+  for (const Contribution& c : contributions_) AddContribution(ws, joints, c);
   matrix_.SetZero();
   for (const Block& block : blocks_) AddBlockToMatrix(ws, block);
   AddJacobianToMatrix(ws);
   matrix_.Factor();
 }
 
-void ReactionSolver::AddBlockToMatrix(const TreeWorkspace<double>& ws, const Block& block) {
+template <typename T>
+void ReactionSolver<T>::AddContribution(const TreeWorkspace<T>& ws,
+                                        const std::vector<JointState<T>>& joints,
+                                        const Contribution& contribution) {
+  const JointState<T>& joint = joints[contribution.joint];
+  const JointCompliance& compliance = compliances_[contribution.joint];
+  const Load& k = loads_[contribution.joint][contribution.load_k];
+  const Load& l = loads_[contribution.joint][contribution.load_l];
+  const double sign = k.sign * l.sign;
+  const bool symmetric = k.loop == l.loop;
+  const Vector3<T> d_k = ws.loops[k.loop].p_WM - joint.p_WM;
+  const Vector3<T> d_l = symmetric ? d_k : Vector3<T>(ws.loops[l.loop].p_WM - joint.p_WM);
+  Block& block = blocks_[contribution.block];
+
+  // The isotropic part, S(d_k) S(d_l)' = d_k.d_l 1 - d_l d_k'.
+  const double force = sign * compliance.force.x();
+  const double moment = sign * IsotropicMoment(contribution.joint);
+  const T squares = force + moment * d_k.dot(d_l);
+  for (int i = 0; i < 3; ++i) {
+    block.A_ff(i, i) += squares;
+    block.A_mm(i, i) += moment;
+  }
+  if (moment != 0) {
+    const Vector3<T> m_k = moment * d_k, m_l = moment * d_l;
+    block.A_ff -= m_l * d_k.transpose();
+    AddCross<T>(-m_k, &block.A_fm);
+    if (!symmetric) AddCross<T>(m_l, &block.A_mf);
+  }
+  ForEachDirection(tree_.mechanism.joints[contribution.joint], compliance, joint,
+                   [&](const Softness<T>& soft) {
+                     const Vector3<T>& a = soft.axis;
+                     const Vector3<T> c_k = d_k.cross(a);
+                     const Vector3<T> c_l = symmetric ? c_k : d_l.cross(a);
+                     const Vector3<T> force_a = (sign * soft.force) * a;
+                     const Vector3<T> moment_a = (sign * soft.moment) * a;
+                     const Vector3<T> moment_c = (sign * soft.moment) * c_k;
+                     block.A_ff += force_a * a.transpose() + moment_c * c_l.transpose();
+                     block.A_fm -= moment_c * a.transpose();
+                     block.A_mm += moment_a * a.transpose();
+                     if (!symmetric) block.A_mf -= moment_a * c_l.transpose();
+                   });
+}
+
+template <typename T>
+double ReactionSolver<T>::IsotropicMoment(int joint) const {
+  const bool universal = tree_.mechanism.joints[joint].type == JointType::kUniversal;
+  return universal ? 0 : compliances_[joint].moment.x();
+}
+
+template <typename T>
+void ReactionSolver<T>::AddBlockToMatrix(const TreeWorkspace<T>& ws, const Block& block) {
   const Loop& loop_k = tree_.loops[block.k];
   const Loop& loop_l = tree_.loops[block.l];
-  const Matrix3d& R_k = ws.loops[block.k].R_WF;
-  const Matrix3d& R_l = ws.loops[block.l].R_WF;
+  const Matrix3<T>& R_k = ws.loops[block.k].R_WF;
+  const Matrix3<T>& R_l = ws.loops[block.l].R_WF;
   // T_k' (R_k' A_W R_l) T_l, column by column and then row by row.
-  Matrix6d A_F;
-  for (int i = 0; i < 6; i += 3) {
-    for (int j = 0; j < 6; j += 3) {
-      A_F.block<3, 3>(i, j) = R_k.transpose() * block.A_W.block<3, 3>(i, j) * R_l;
-    }
-  }
-  Matrix6d half;
-  for (int j = 0; j < 6; ++j) {
-    half.row(j) = ProjectOnRows<double>(loop_k, ws.loops[block.k], A_F.col(j).head<3>(),
-                                        A_F.col(j).tail<3>());
+  const Matrix3<T> ff = R_k.transpose() * block.A_ff * R_l;
+  const Matrix3<T> fm = R_k.transpose() * block.A_fm * R_l;
+  const Matrix3<T> mf = block.k == block.l ? Matrix3<T>(fm.transpose())
+                                           : Matrix3<T>(R_k.transpose() * block.A_mf * R_l);
+  const Matrix3<T> mm = R_k.transpose() * block.A_mm * R_l;
+  Vector6<T> columns[6];
+  for (int j = 0; j < 3; ++j) {
+    columns[j] = ProjectOnRows<T>(loop_k, ws.loops[block.k], ff.col(j), mf.col(j));
+    columns[3 + j] = ProjectOnRows<T>(loop_k, ws.loops[block.k], fm.col(j), mm.col(j));
   }
   for (int i = 0; i < loop_k.rows; ++i) {
-    const Vector6d row = ProjectOnRows<double>(loop_l, ws.loops[block.l], half.col(i).head<3>(),
-                                               half.col(i).tail<3>());
-    const int columns = block.k == block.l ? i + 1 : loop_l.rows;
-    for (int j = 0; j < columns; ++j) {
+    const Vector6<T> row =
+        ProjectOnRows<T>(loop_l, ws.loops[block.l], {columns[0][i], columns[1][i], columns[2][i]},
+                         {columns[3][i], columns[4][i], columns[5][i]});
+    const int count = block.k == block.l ? i + 1 : loop_l.rows;
+    for (int j = 0; j < count; ++j) {
       matrix_(row_position_[block.k] + i, row_position_[block.l] + j) += row[j];
     }
   }
 }
 
-void ReactionSolver::AddJacobianToMatrix(const TreeWorkspace<double>& ws) {
+template <typename T>
+void ReactionSolver<T>::AddJacobianToMatrix(const TreeWorkspace<T>& ws) {
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
-    const Vector6d* C = &ws.loop_columns[ws.first_column[l]];
+    const Vector6<T>* C = &ws.loop_columns[ws.first_column[l]];
     for (const LoopColumn& c : tree_.loops[l].columns) {
       const int slot = partition_.dependent_slot[c.v];
       if (slot >= 0) {
@@ -251,22 +314,30 @@ void ReactionSolver::AddJacobianToMatrix(const TreeWorkspace<double>& ws) {
   }
 }
 
-void ReactionSolver::Solve(const TreeWorkspace<double>& ws, const std::vector<JointState>& joints,
-                           const double* r, double* mu) {
-  for (Wrenchd& strain : strain_W_) strain = {};
+template <typename T>
+void ReactionSolver<T>::Solve(const TreeWorkspace<T>& ws, const std::vector<JointState<T>>& joints,
+                              const T* r, T* mu) {
+  for (Wrench<T>& strain : strain_W_) strain = Wrench<T>{};
   for (size_t j = 0; j < joints.size(); ++j) {
     if (loads_[j].empty()) continue;
-    const Vector3d give = soft_force_W_[j] * joints[j].W_M.force;
-    const Vector3d turn = soft_moment_W_[j] * joints[j].W_M.moment;
+    const Wrench<T>& W = joints[j].W_M;
+    Vector3<T> give = compliances_[j].force.x() * W.force;
+    Vector3<T> turn = IsotropicMoment(static_cast<int>(j)) * W.moment;
+    ForEachDirection(tree_.mechanism.joints[j], compliances_[j], joints[j],
+                     [&](const Softness<T>& soft) {
+                       give += (soft.force * soft.axis.dot(W.force)) * soft.axis;
+                       turn += (soft.moment * soft.axis.dot(W.moment)) * soft.axis;
+                     });
     for (const Load& load : loads_[j]) {
-      const Vector3d d = ws.loops[load.loop].p_WM - joints[j].p_WM;
+      const Vector3<T> d = ws.loops[load.loop].p_WM - joints[j].p_WM;
       strain_W_[load.loop].force += load.sign * (give - d.cross(turn));
       strain_W_[load.loop].moment += load.sign * turn;
     }
   }
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
-    const Wrenchd strain_F = strain_W_[l].In(ws.loops[l].R_WF);
-    const Vector6d b = ProjectOnRows(tree_.loops[l], ws.loops[l], strain_F.force, strain_F.moment);
+    const Wrench<T> strain_F = strain_W_[l].In(ws.loops[l].R_WF);
+    const Vector6<T> b =
+        ProjectOnRows(tree_.loops[l], ws.loops[l], strain_F.force, strain_F.moment);
     for (int i = 0; i < tree_.loops[l].rows; ++i) unknowns_[row_position_[l] + i] = -b[i];
   }
   for (size_t u = 0; u < dependent_position_.size(); ++u) {
@@ -279,5 +350,16 @@ void ReactionSolver::Solve(const TreeWorkspace<double>& ws, const std::vector<Jo
     }
   }
 }
+
+#define VMECH_INSTANTIATE(T)                                                                 \
+  template void JointFrames<T>(const KinematicTree&, const TreeWorkspace<T>&,                \
+                               std::vector<JointState<T>>*);                                 \
+  template void TreeJointWrenches<T>(const KinematicTree&, const TreeWorkspace<T>&,          \
+                                     std::vector<JointState<T>>*);                           \
+  template void AddMultiplierWrenches<T>(const KinematicTree&, const T*, TreeWorkspace<T>*); \
+  template class ReactionSolver<T>;
+VMECH_INSTANTIATE(double)
+VMECH_INSTANTIATE(Packet)
+#undef VMECH_INSTANTIATE
 
 }  // namespace vmech

@@ -9,12 +9,14 @@
 
 namespace vmech {
 
-/// A joint in one pose. F is the anchor on its first link, M that on its second.
+/// A joint in one pose (T: double, or Packet for four). F is the anchor on its first link, M that
+/// on its second.
+template <typename T>
 struct JointState {
-  Matrix3d R_WF;
-  Vector3d p_WM;
-  Vector3d n_W;  ///< kUniversal: unit vector across both axes, the one moment that the joint holds
-  Wrenchd W_M;   ///< what the first link exerts on the second, about M, world axes
+  Matrix3<T> R_WF;
+  Vector3<T> p_WM;
+  Vector3<T> n_W;  ///< kUniversal: unit vector across both axes, the one moment that it holds
+  Wrench<T> W_M;   ///< what the first link exerts on the second, about M, world axes
 };
 
 /// How soft a joint is against the force and moment that it holds, axes of F [m/N], [rad/(N m)];
@@ -32,13 +34,16 @@ std::vector<JointCompliance> CompliancesForRule(const KinematicTree& tree, React
 inline constexpr double kDefaultStiffness = 1e8;  ///< [N/m], of a medium-sized ball bearing
 
 /// Frames of all joints. Needs X_WB; writes R_WF, p_WM and n_W.
-void JointFrames(const KinematicTree& tree, const TreeWorkspace<double>& ws,
-                 std::vector<JointState>* joints);
+template <typename T>
+void JointFrames(const KinematicTree& tree, const TreeWorkspace<T>& ws,
+                 std::vector<JointState<T>>* joints);
 /// Wrenches of the tree joints from F_Bo; those of cut joints are left alone.
-void TreeJointWrenches(const KinematicTree& tree, const TreeWorkspace<double>& ws,
-                       std::vector<JointState>* joints);
+template <typename T>
+void TreeJointWrenches(const KinematicTree& tree, const TreeWorkspace<T>& ws,
+                       std::vector<JointState<T>>* joints);
 /// Adds what the multipliers mu [rows] of the cut joints do to F_Bo all around their loops.
-void AddMultiplierWrenches(const KinematicTree& tree, const double* mu, TreeWorkspace<double>* ws);
+template <typename T>
+void AddMultiplierWrenches(const KinematicTree& tree, const T* mu, TreeWorkspace<T>* ws);
 
 /// The multipliers of the cut joints. Equilibrium of the dependent freedoms, C_u' mu = r (paper eq.
 /// 13), leaves as many of them open as there are redundant equations; these follow from the least
@@ -52,17 +57,18 @@ void AddMultiplierWrenches(const KinematicTree& tree, const double* mu, TreeWork
 /// Unknowns are ordered loop by loop, each dependent freedom behind the last loop that it moves, so
 /// that no pivot vanishes while the loops determine the dependent freedoms. The answer does not
 /// depend on where the loops are cut.
+template <typename T>
 class ReactionSolver {
  public:
   ReactionSolver(const KinematicTree& tree, const CoordinatePartition& partition,
                  std::vector<JointCompliance> compliances);
 
   /// Needs LoopJacobian in ws and JointFrames; factors the matrix above.
-  void Factor(const TreeWorkspace<double>& ws, const std::vector<JointState>& joints);
+  void Factor(const TreeWorkspace<T>& ws, const std::vector<JointState<T>>& joints);
   /// `joints` carry the wrenches W_j0 without multipliers; r [nv] is read at the dependent entries.
   /// Writes mu [rows].
-  void Solve(const TreeWorkspace<double>& ws, const std::vector<JointState>& joints,
-             const double* r, double* mu);
+  void Solve(const TreeWorkspace<T>& ws, const std::vector<JointState<T>>& joints, const T* r,
+             T* mu);
 
  private:
   /// A loop that loads a joint, and the sense in which mu enters W_M.
@@ -70,10 +76,11 @@ class ReactionSolver {
     int loop;
     double sign;
   };
-  /// Two loops that load a joint in common, l <= k; their share of A in world axes, [f; m].
+  /// Two loops that load a joint in common, l <= k; their share of A in world axes, by forces and
+  /// moments. Symmetric where k = l: A_mf is not used there.
   struct Block {
     int k, l;
-    Matrix6d A_W;
+    Matrix3<T> A_ff, A_fm, A_mf, A_mm;
   };
   /// Joint j feeds blocks_[block] through its loads number k and l.
   struct Contribution {
@@ -83,8 +90,11 @@ class ReactionSolver {
   void FindLoads();
   void OrderUnknowns();
   int BlockIndex(int k, int l);
-  void AddBlockToMatrix(const TreeWorkspace<double>& ws, const Block& block);
-  void AddJacobianToMatrix(const TreeWorkspace<double>& ws);
+  void AddContribution(const TreeWorkspace<T>& ws, const std::vector<JointState<T>>& joints,
+                       const Contribution& contribution);
+  double IsotropicMoment(int joint) const;
+  void AddBlockToMatrix(const TreeWorkspace<T>& ws, const Block& block);
+  void AddJacobianToMatrix(const TreeWorkspace<T>& ws);
 
   const KinematicTree& tree_;
   const CoordinatePartition& partition_;
@@ -94,10 +104,9 @@ class ReactionSolver {
   std::vector<Contribution> contributions_;
   std::vector<int> row_position_;        ///< per loop: place of its first row among the unknowns
   std::vector<int> dependent_position_;  ///< per dependent velocity
-  std::vector<Matrix3d> soft_force_W_, soft_moment_W_;  ///< D_j, world axes
-  std::vector<Wrenchd> strain_W_;                       ///< per loop: b before projection
-  std::vector<double> unknowns_;
-  EnvelopeLdlt matrix_;
+  std::vector<Wrench<T>> strain_W_;      ///< per loop: b before projection
+  std::vector<T> unknowns_;
+  EnvelopeLdlt<T> matrix_;
 };
 
 }  // namespace vmech

@@ -8,7 +8,9 @@
 #include "vmech/dynamics/idle_freedoms.h"
 #include "vmech/dynamics/load_model.h"
 #include "vmech/kinematics/follow_hand.h"
+#include "vmech/kinematics/forward_kinematics.h"
 #include "vmech/kinematics/loops.h"
+#include "vmech/kinematics/packet.h"
 
 namespace vmech {
 namespace {
@@ -25,6 +27,10 @@ class Tracker {
         tolerance_(tolerance),
         ws_(tree_),
         dependents_(tree_, model_.partition),
+        packet_ws_(tree_),
+        packet_dependents_(tree_, model_.partition),
+        packet_q_(tree_.nq, Packet(0)),
+        packet_predicted_(packet_q_),
         idle_(model_),
         q_(prepared.q_start),
         q_trial_(q_),
@@ -39,6 +45,10 @@ class Tracker {
     EvaluatePose(tree_, q_, &ws_);
     idle_.Remember(ws_);
     StartCutPositions();
+    motion_.times.reserve(study.times.size());
+    motion_.drives.reserve(study.times.size() * study.drives.size());
+    motion_.coordinates.reserve(study.times.size() * tree_.nq);
+    motion_.cut_positions.reserve(study.times.size() * tree_.loops.size());
   }
 
   /// From the assembled start to where the motion begins.
@@ -66,15 +76,38 @@ class Tracker {
     SettleIdle();
   }
 
-  PoseInput Input(double time) const {
-    PoseInput input;
-    input.time = time;
-    input.q = q_;
-    for (const JointDrive& drive : study_.drives) input.drives.push_back(drive.law.At(time));
-    if (study_.hand) input.hand = study_.hand->law.At(time);
-    input.cut_positions = cut_positions_;
-    return input;
+  /// Four poses at once, if their predictions are good enough; otherwise nothing is done.
+  bool AdvancePacket(const double* times) {
+    if (study_.hand || !model_.partition.idle.empty() || history_ < 3) return false;
+    const size_t first = motion_.size();
+    for (int lane = 0; lane < Packet::kLanes; ++lane) RecordDrives(times[lane]);
+    PredictPacket(first);
+    const Packet error = CloseByNewton(tree_, tolerance_, kNewtonSteps, &packet_dependents_,
+                                       &packet_ws_, packet_q_.data());
+    if (!AllLanes(error <= Packet(tolerance_)) || !StaysOnBranch()) {
+      ForgetDrives(first);
+      return false;
+    }
+    for (size_t l = 0; l < tree_.loops.size(); ++l) {
+      packet_cut_[l] = CutJointCoordinates(tree_.loops[l], packet_ws_.loops[l]);
+    }
+    for (int lane = 0; lane < Packet::kLanes; ++lane) {
+      q_past_[2].swap(q_past_[1]);
+      q_past_[1].swap(q_past_[0]);
+      q_past_[0].swap(q_);
+      TakeLane(lane, &q_);
+    }
+    for (size_t k = 0; k < position_.size(); ++k) position_[k] = q_[coordinate_[k]];
+    return true;
   }
+
+  void Record(double time) {
+    RecordDrives(time);
+    if (study_.hand) motion_.hand.push_back(study_.hand->law.At(time));
+    RecordPose(q_);
+  }
+
+  Motion TakeMotion() { return std::move(motion_); }
 
  private:
   static constexpr int kApproachSteps = 16;
@@ -104,10 +137,12 @@ class Tracker {
     for (size_t k = 0; k < target.size(); ++k) q_trial_[coordinate_[k]] = target[k];
     q_predicted_ = q_trial_;
     const double error =
-        CloseByNewton(tree_, tolerance_, kNewtonSteps, &dependents_, &ws_, &q_trial_);
+        CloseByNewton(tree_, tolerance_, kNewtonSteps, &dependents_, &ws_, q_trial_.data());
     const double correction = (q_trial_ - q_predicted_).cwiseAbs().maxCoeff();
     if (!(error <= tolerance_) || correction > kTrustedShare * size + kTrustedTurn) return false;
-    Accept(target);
+    Accept();
+    position_ = target;
+    UnwrapCutPositions();
     return true;
   }
 
@@ -146,14 +181,65 @@ class Tracker {
     Integrate(tree_, step_, &q_trial_);  // quaternions back to unit length
   }
 
-  void Accept(const std::vector<double>& target) {
+  void RecordDrives(double time) {
+    motion_.times.push_back(time);
+    for (const JointDrive& drive : study_.drives) motion_.drives.push_back(drive.law.At(time));
+  }
+
+  void ForgetDrives(size_t from) {
+    motion_.times.resize(from);
+    motion_.drives.resize(from * study_.drives.size());
+  }
+
+  void RecordPose(const VectorXd& q) {
+    for (const double coordinate : q) motion_.coordinates.push_back(coordinate);
+    for (const Vector3d& position : cut_positions_) motion_.cut_positions.push_back(position);
+  }
+
+  /// Records one pose of a packet and copies it to q.
+  void TakeLane(int lane, VectorXd* q) {
+    for (int i = 0; i < tree_.nq; ++i) (*q)[i] = packet_q_[i][lane];
+    for (size_t l = 0; l < tree_.loops.size(); ++l) {
+      UnwrapCutPosition(l, Lane(packet_cut_[l], lane));
+    }
+    RecordPose(*q);
+  }
+
+  /// The polynomial of Extrapolate, one pose ahead and more.
+  void PredictPacket(size_t pose) {
+    const Packet n = Packet::Of([](int lane) { return lane + 1.0; });
+    const Packet a = (n + 1) * (n + 2) * (n + 3) / 6, b = n * (n + 2) * (n + 3) / 2,
+                 c = n * (n + 1) * (n + 3) / 2, d = n * (n + 1) * (n + 2) / 6;
+    for (int i = 0; i < tree_.nq; ++i) {
+      packet_q_[i] = a * q_[i] - b * q_past_[0][i] + c * q_past_[1][i] - d * q_past_[2][i];
+    }
+    for (size_t k = 0; k < coordinate_.size(); ++k) {
+      packet_q_[coordinate_[k]] = FromLanes<Packet>([&](int lane) {
+        return motion_.drives[(pose + lane) * coordinate_.size() + k].position;
+      });
+    }
+    std::fill(packet_step_.begin(), packet_step_.end(), Packet(0));
+    MoveCoordinates(tree_, packet_step_.data(), packet_q_.data());  // quaternions to unit length
+    packet_predicted_ = packet_q_;
+  }
+
+  /// Are the corrections of all four predictions to be trusted?
+  bool StaysOnBranch() const {
+    Packet size(0), correction(0);
+    for (int i = 0; i < tree_.nq; ++i) {
+      const Packet& predicted = packet_predicted_[i];
+      size = max(size, abs(predicted - ShiftIn(q_[i], predicted)));
+      correction = max(correction, abs(packet_q_[i] - predicted));
+    }
+    return AllLanes(correction <= kTrustedShare * size + kTrustedTurn);
+  }
+
+  void Accept() {
     q_past_[2].swap(q_past_[1]);
     q_past_[1].swap(q_past_[0]);
     q_past_[0].swap(q_);
     q_ = q_trial_;
-    position_ = target;
     history_ = std::min(history_ + 1, 3);
-    UnwrapCutPositions();
   }
 
   void Follow(double time, size_t pose) {
@@ -184,15 +270,18 @@ class Tracker {
     UnwrapCutPositions();
   }
 
-  /// Angles of the cut joints continue from where they were.
   void UnwrapCutPositions() {
     for (size_t l = 0; l < tree_.loops.size(); ++l) {
-      const Vector3d now = CutJointCoordinates(tree_.loops[l], ws_.loops[l]);
-      for (int k = 0; k < 3; ++k) {
-        const bool is_angle = IsAngle(tree_.loops[l].type, k);
-        const double turns = is_angle ? std::round((cut_positions_[l][k] - now[k]) / kTurn) : 0;
-        cut_positions_[l][k] = now[k] + turns * kTurn;
-      }
+      UnwrapCutPosition(l, CutJointCoordinates(tree_.loops[l], ws_.loops[l]));
+    }
+  }
+
+  /// Angles of the cut joints continue from where they were.
+  void UnwrapCutPosition(size_t l, const Vector3d& now) {
+    for (int k = 0; k < 3; ++k) {
+      const bool is_angle = IsAngle(tree_.loops[l].type, k);
+      const double turns = is_angle ? std::round((cut_positions_[l][k] - now[k]) / kTurn) : 0;
+      cut_positions_[l][k] = now[k] + turns * kTurn;
     }
   }
 
@@ -229,7 +318,12 @@ class Tracker {
   const KinematicTree& tree_;
   double tolerance_;
   TreeWorkspace<double> ws_;
-  DependentSolver dependents_;
+  DependentSolver<double> dependents_;
+  TreeWorkspace<Packet> packet_ws_;
+  DependentSolver<Packet> packet_dependents_;
+  std::vector<Packet> packet_q_, packet_predicted_;
+  std::vector<Vector3<Packet>> packet_cut_ = std::vector<Vector3<Packet>>(tree_.loops.size());
+  std::vector<Packet> packet_step_ = std::vector<Packet>(tree_.nv, Packet(0));
   IdlePositions idle_;
   VectorXd q_, q_trial_, q_predicted_;
   VectorXd q_past_[3];  ///< accepted poses before q_, the latest first
@@ -239,21 +333,26 @@ class Tracker {
   std::vector<double> target_;
   std::vector<Vector3d> cut_positions_;
   int history_ = 0;  ///< how many of q_past_ lie one pose behind the other
+  Motion motion_;
 };
 
 }  // namespace
 
-std::vector<PoseInput> TrackMotion(const LoadStudy& study, const PreparedStudy& prepared,
-                                   double closure_tolerance) {
+Motion TrackMotion(const LoadStudy& study, const PreparedStudy& prepared,
+                   double closure_tolerance) {
   Tracker tracker(study, prepared, closure_tolerance);
   tracker.Approach();
-  std::vector<PoseInput> inputs;
-  inputs.reserve(study.times.size());
-  for (size_t i = 0; i < study.times.size(); ++i) {
-    tracker.Advance(study.times[i], i);
-    inputs.push_back(tracker.Input(study.times[i]));
+  const std::vector<double>& times = study.times;
+  for (size_t i = 0; i < times.size();) {
+    if (i + Packet::kLanes <= times.size() && tracker.AdvancePacket(&times[i])) {
+      i += Packet::kLanes;
+      continue;
+    }
+    tracker.Advance(times[i], i);
+    tracker.Record(times[i]);
+    ++i;
   }
-  return inputs;
+  return tracker.TakeMotion();
 }
 
 }  // namespace vmech

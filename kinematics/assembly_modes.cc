@@ -232,7 +232,8 @@ class ModeSearch {
     const Joint& joint = tree_.mechanism.joints[tree_.loops[l].joint];
     if (joint.type == JointType::kSpherical) return true;
     const Vector3d now = CutJointCoordinates(tree_.loops[l], ik_.workspace().loops[l]);
-    const CutJointFreedoms freedoms = FreedomsOfCutJoint(tree_.loops[l], ik_.workspace().loops[l]);
+    const CutJointFreedoms<double> freedoms =
+        FreedomsOfCutJoint(tree_.loops[l], ik_.workspace().loops[l]);
     for (int k = 0; k < freedoms.count; ++k) {
       const bool turns = !freedoms.twist_F[k].tail<3>().isZero() && joint.type != JointType::kScrew;
       double value = now[k];

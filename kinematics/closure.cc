@@ -5,11 +5,20 @@
 
 #include "vmech/kinematics/forward_kinematics.h"
 #include "vmech/kinematics/loops.h"
+#include "vmech/kinematics/packet.h"
 
 namespace vmech {
 namespace {
 
 constexpr double kWellConditioned = 1e-2;  // pivot ratio: at most two digits are lost
+constexpr double kFastShare = 1e-3;        // of the error before: chord steps gain no less
+
+template <typename T>
+Vector6<T> Weighted(const Vector6d& weight, const Vector6<T>& x) {
+  Vector6<T> product;
+  for (int i = 0; i < 6; ++i) product[i] = weight[i] * x[i];
+  return product;
+}
 
 /// First dependent slot that shares a loop with each slot: the envelope of C_u' C_u.
 std::vector<int> NormalEnvelope(const KinematicTree& tree, const CoordinatePartition& partition) {
@@ -31,12 +40,13 @@ std::vector<int> NormalEnvelope(const KinematicTree& tree, const CoordinateParti
 
 }  // namespace
 
-DependentSolver::DependentSolver(const KinematicTree& tree, CoordinatePartition partition)
+template <typename T>
+DependentSolver<T>::DependentSolver(const KinematicTree& tree, CoordinatePartition partition)
     : tree_(tree),
       partition_(std::move(partition)),
-      residual_(tree.loops.size(), Vector6d::Zero()),
-      solution_(partition_.dependent.size(), 0.0),
-      step_(tree.nv),
+      residual_(tree.loops.size(), Vector6<T>::Zero()),
+      solution_(partition_.dependent.size(), T(0)),
+      step_(tree.nv, T(0)),
       normal_(NormalEnvelope(tree, partition_)) {
   const VectorXd scale = LoopRowScale(tree);
   for (const Loop& loop : tree.loops) {
@@ -46,15 +56,16 @@ DependentSolver::DependentSolver(const KinematicTree& tree, CoordinatePartition 
   }
 }
 
-void DependentSolver::Factor(const TreeWorkspace<double>& ws) {
+template <typename T>
+void DependentSolver<T>::Factor(const TreeWorkspace<T>& ws) {
   normal_.SetZero();
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
     const std::vector<LoopColumn>& columns = tree_.loops[l].columns;
-    const Vector6d* C = &ws.loop_columns[ws.first_column[l]];
+    const Vector6<T>* C = &ws.loop_columns[ws.first_column[l]];
     for (size_t i = 0; i < columns.size(); ++i) {
       const int slot_i = partition_.dependent_slot[columns[i].v];
       if (slot_i < 0) continue;
-      const Vector6d weighted = weight_[l].cwiseProduct(C[i]);
+      const Vector6<T> weighted = Weighted(weight_[l], C[i]);
       for (size_t j = 0; j <= i; ++j) {
         const int slot_j = partition_.dependent_slot[columns[j].v];
         if (slot_j >= 0) normal_.Add(slot_i, slot_j, weighted.dot(C[j]));
@@ -64,7 +75,8 @@ void DependentSolver::Factor(const TreeWorkspace<double>& ws) {
   normal_.Factor();
 }
 
-void DependentSolver::StartResidual(const TreeWorkspace<double>& ws, Target target) {
+template <typename T>
+void DependentSolver<T>::StartResidual(const TreeWorkspace<T>& ws, Target target) {
   for (size_t l = 0; l < residual_.size(); ++l) {
     switch (target) {
       case Target::kErrors:
@@ -80,18 +92,20 @@ void DependentSolver::StartResidual(const TreeWorkspace<double>& ws, Target targ
   }
 }
 
-void DependentSolver::SubtractColumns(const TreeWorkspace<double>& ws, const double* x) {
+template <typename T>
+void DependentSolver<T>::SubtractColumns(const TreeWorkspace<T>& ws, const T* x) {
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
-    const Vector6d* C = &ws.loop_columns[ws.first_column[l]];
+    const Vector6<T>* C = &ws.loop_columns[ws.first_column[l]];
     for (const LoopColumn& c : tree_.loops[l].columns) residual_[l] -= *C++ * x[c.v];
   }
 }
 
-void DependentSolver::SolveInto(const TreeWorkspace<double>& ws, double* x) {
-  std::fill(solution_.begin(), solution_.end(), 0.0);
+template <typename T>
+void DependentSolver<T>::SolveInto(const TreeWorkspace<T>& ws, T* x) {
+  std::fill(solution_.begin(), solution_.end(), T(0));
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
-    const Vector6d weighted = weight_[l].cwiseProduct(residual_[l]);
-    const Vector6d* C = &ws.loop_columns[ws.first_column[l]];
+    const Vector6<T> weighted = Weighted(weight_[l], residual_[l]);
+    const Vector6<T>* C = &ws.loop_columns[ws.first_column[l]];
     for (const LoopColumn& c : tree_.loops[l].columns) {
       const int slot = partition_.dependent_slot[c.v];
       if (slot >= 0) solution_[slot] += C->dot(weighted);
@@ -102,18 +116,20 @@ void DependentSolver::SolveInto(const TreeWorkspace<double>& ws, double* x) {
   for (size_t i = 0; i < solution_.size(); ++i) x[partition_.dependent[i]] += solution_[i];
 }
 
-void DependentSolver::StepCoordinates(const TreeWorkspace<double>& ws, VectorXd* q) {
+template <typename T>
+void DependentSolver<T>::StepCoordinates(const TreeWorkspace<T>& ws, T* q) {
   StartResidual(ws, Target::kErrors);
-  step_.setZero();
+  std::fill(step_.begin(), step_.end(), T(0));
   SolveInto(ws, step_.data());
-  Integrate(tree_, step_, q);
+  MoveCoordinates(tree_, step_.data(), q);
 }
 
-void DependentSolver::Complete(const TreeWorkspace<double>& ws, Target target, double* x) {
-  for (int v : partition_.dependent) x[v] = 0;
+template <typename T>
+void DependentSolver<T>::Complete(const TreeWorkspace<T>& ws, Target target, T* x) {
+  for (int v : partition_.dependent) x[v] = T(0);
   // A second pass refines what the squared condition of the normal equations costs near a dead
   // centre.
-  const int passes = normal_.smallest_pivot() > kWellConditioned ? 1 : 2;
+  const int passes = AllLanes(normal_.smallest_pivot() > T(kWellConditioned)) ? 1 : 2;
   for (int pass = 0; pass < passes; ++pass) {
     StartResidual(ws, target);
     SubtractColumns(ws, x);
@@ -121,47 +137,53 @@ void DependentSolver::Complete(const TreeWorkspace<double>& ws, Target target, d
   }
 }
 
-void DependentSolver::CompleteVelocities(const TreeWorkspace<double>& ws, double* v) {
+template <typename T>
+void DependentSolver<T>::CompleteVelocities(const TreeWorkspace<T>& ws, T* v) {
   Complete(ws, Target::kZero, v);
 }
 
-void DependentSolver::CompleteAccelerations(const TreeWorkspace<double>& ws, double* vdot) {
+template <typename T>
+void DependentSolver<T>::CompleteAccelerations(const TreeWorkspace<T>& ws, T* vdot) {
   Complete(ws, Target::kMinusBias, vdot);
 }
 
-double LargestLoopError(const KinematicTree& tree, const TreeWorkspace<double>& ws) {
-  double largest = 0;
-  for (size_t l = 0; l < tree.loops.size(); ++l) {
-    const Loop& loop = tree.loops[l];
-    const double per_length = 1 / tree.length;
-    for (int i = 0; i < loop.rows; ++i) {
-      const double scale = IsLengthRow(loop.type, i) ? per_length : 1.0;
-      largest = std::max(largest, std::abs(ws.loops[l].e2[i]) * scale);
-    }
-    if (FacesBackwards(loop, ws.loops[l])) largest = std::max(largest, 2.0);
-  }
-  return largest;
-}
-
-void EvaluatePose(const KinematicTree& tree, const VectorXd& q, TreeWorkspace<double>* ws,
-                  bool with_jacobian) {
-  ForwardKinematics(tree, q.data(), ws);
+template <typename T>
+void EvaluatePose(const KinematicTree& tree, const T* q, TreeWorkspace<T>* ws, bool with_jacobian) {
+  ForwardKinematics(tree, q, ws);
   LoopErrors(tree, ws);
   if (with_jacobian) LoopJacobian(tree, ws);
 }
 
-double CloseByNewton(const KinematicTree& tree, double tolerance, int max_steps,
-                     DependentSolver* solver, TreeWorkspace<double>* ws, VectorXd* q) {
-  EvaluatePose(tree, *q, ws);
-  double error = LargestLoopError(tree, *ws);
-  for (int step = 0; step < max_steps && !(error <= tolerance); ++step) {
-    solver->Factor(*ws);
+void EvaluatePose(const KinematicTree& tree, const VectorXd& q, TreeWorkspace<double>* ws,
+                  bool with_jacobian) {
+  EvaluatePose(tree, q.data(), ws, with_jacobian);
+}
+
+template <typename T>
+T CloseByNewton(const KinematicTree& tree, double tolerance, int max_steps,
+                DependentSolver<T>* solver, TreeWorkspace<T>* ws, T* q) {
+  EvaluatePose(tree, q, ws, false);
+  T error = LargestLoopError(tree, *ws), before = error;
+  for (int step = 0; step < max_steps && !AllLanes(error <= T(tolerance)); ++step) {
+    if (step == 0 || !AllLanes(error <= kFastShare * before)) {
+      LoopJacobian(tree, ws);
+      solver->Factor(*ws);
+    }
+    before = error;
     solver->StepCoordinates(*ws, q);
-    EvaluatePose(tree, *q, ws, false);
+    EvaluatePose(tree, q, ws, false);
     error = LargestLoopError(tree, *ws);
-    if (!(error <= tolerance)) LoopJacobian(tree, ws);
   }
   return error;
 }
+
+#define VMECH_INSTANTIATE(T)                                                              \
+  template class DependentSolver<T>;                                                      \
+  template void EvaluatePose<T>(const KinematicTree&, const T*, TreeWorkspace<T>*, bool); \
+  template T CloseByNewton<T>(const KinematicTree&, double, int, DependentSolver<T>*,     \
+                              TreeWorkspace<T>*, T*);
+VMECH_INSTANTIATE(double)
+VMECH_INSTANTIATE(Packet)
+#undef VMECH_INSTANTIATE
 
 }  // namespace vmech

@@ -4,6 +4,7 @@
 
 #include "vmech/kinematics/coordinate_partition.h"
 #include "vmech/kinematics/envelope_ldlt.h"
+#include "vmech/kinematics/loops.h"
 #include "vmech/kinematics/tree_workspace.h"
 
 namespace vmech {
@@ -14,6 +15,7 @@ namespace vmech {
 ///
 /// Redundant equations need no care: they are consistent, and H has full rank as long as the chosen
 /// velocities determine the dependent ones.
+template <typename T>
 class DependentSolver {
  public:
   DependentSolver(const KinematicTree& tree, CoordinatePartition partition);
@@ -21,47 +23,48 @@ class DependentSolver {
   const CoordinatePartition& partition() const { return partition_; }
 
   /// Needs LoopJacobian in ws.
-  void Factor(const TreeWorkspace<double>& ws);
+  void Factor(const TreeWorkspace<T>& ws);
   /// Dead centre: sin^2 of the angle by which the least independent dependent velocity is
   /// independent of the others; 0 if the loops do not determine it here.
-  double smallest_pivot() const { return normal_.smallest_pivot(); }
-  int undetermined() const { return normal_.zero_pivots(); }
+  const T& smallest_pivot() const { return normal_.smallest_pivot(); }
 
-  /// One Newton step of loop closure, C dq = e2 (paper eq. 4), on the dependent coordinates of q.
-  void StepCoordinates(const TreeWorkspace<double>& ws, VectorXd* q);
+  /// One step of loop closure, C dq = e2 (paper eq. 4), on the dependent coordinates of q [nq].
+  /// With C of the pose in ws it is Newton's; with C and factor of an earlier pose a chord step.
+  void StepCoordinates(const TreeWorkspace<T>& ws, T* q);
   /// Sets the dependent entries of v so that C v = 0, from its driven and idle entries.
-  void CompleteVelocities(const TreeWorkspace<double>& ws, double* v);
+  void CompleteVelocities(const TreeWorkspace<T>& ws, T* v);
   /// Sets the dependent entries of vdot so that C vdot + bias = 0 (LoopAccelerationBias).
-  void CompleteAccelerations(const TreeWorkspace<double>& ws, double* vdot);
+  void CompleteAccelerations(const TreeWorkspace<T>& ws, T* vdot);
 
  private:
   enum class Target { kErrors, kZero, kMinusBias };
-  void StartResidual(const TreeWorkspace<double>& ws, Target target);
-  void SubtractColumns(const TreeWorkspace<double>& ws, const double* x);
-  void SolveInto(const TreeWorkspace<double>& ws, double* x);
-  void Complete(const TreeWorkspace<double>& ws, Target target, double* x);
+  void StartResidual(const TreeWorkspace<T>& ws, Target target);
+  void SubtractColumns(const TreeWorkspace<T>& ws, const T* x);
+  void SolveInto(const TreeWorkspace<T>& ws, T* x);
+  void Complete(const TreeWorkspace<T>& ws, Target target, T* x);
 
   const KinematicTree& tree_;
   CoordinatePartition partition_;
-  std::vector<Vector6d> weight_;    ///< W^2 per loop
-  std::vector<Vector6d> residual_;  ///< per loop
-  std::vector<double> solution_;    ///< per dependent velocity
-  VectorXd step_;                   ///< [nv]
-  EnvelopeLdlt normal_;
+  std::vector<Vector6d> weight_;      ///< W^2 per loop
+  std::vector<Vector6<T>> residual_;  ///< per loop
+  std::vector<T> solution_;           ///< per dependent velocity
+  std::vector<T> step_;               ///< [nv]
+  EnvelopeLdlt<T> normal_;
 };
 
-/// Largest loop error, lengths divided by the characteristic length. A loop assembled half a turn
-/// the wrong way counts with its full error. Needs LoopErrors.
-double LargestLoopError(const KinematicTree& tree, const TreeWorkspace<double>& ws);
-
 /// Positions: poses, loop errors and, if asked, C.
+template <typename T>
+void EvaluatePose(const KinematicTree& tree, const T* q, TreeWorkspace<T>* ws,
+                  bool with_jacobian = true);
 void EvaluatePose(const KinematicTree& tree, const VectorXd& q, TreeWorkspace<double>* ws,
                   bool with_jacobian = true);
 
-/// Newton's iteration on the dependent coordinates, warm-started: q is moved until the largest loop
-/// error is at most `tolerance`, at most `max_steps` times. Leaves ws at the last pose.
-/// Returns the loop error there. For the whole way from a rough guess see Assemble.
-double CloseByNewton(const KinematicTree& tree, double tolerance, int max_steps,
-                     DependentSolver* solver, TreeWorkspace<double>* ws, VectorXd* q);
+/// Newton's iteration on the dependent coordinates, warm-started: q [nq] is moved until the largest
+/// loop error is at most `tolerance`, at most `max_steps` times. While it converges fast the
+/// factors are kept (chord steps). Leaves poses and loop errors in ws at the last q. Returns the
+/// loop error there. For the whole way from a rough guess see Assemble.
+template <typename T>
+T CloseByNewton(const KinematicTree& tree, double tolerance, int max_steps,
+                DependentSolver<T>* solver, TreeWorkspace<T>* ws, T* q);
 
 }  // namespace vmech

@@ -3,63 +3,77 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vmech/kinematics/packet.h"
+
 namespace vmech {
 
-EnvelopeLdlt::EnvelopeLdlt(std::vector<int> first) : first_(std::move(first)) {
+template <typename T>
+EnvelopeLdlt<T>::EnvelopeLdlt(std::vector<int> first) : first_(std::move(first)) {
   int total = 0;
   for (int i = 0; i < size(); ++i) {
-    start_.push_back(total);
+    row_.push_back(total - first_[i]);
     total += i - first_[i] + 1;
   }
-  values_.assign(total, 0.0);
-  inverse_pivot_.assign(first_.size(), 0.0);
+  values_.assign(total, T(0));
+  inverse_pivot_.assign(first_.size(), T(0));
+  products_.assign(first_.size(), T(0));
 }
 
-void EnvelopeLdlt::SetZero() {
-  std::fill(values_.begin(), values_.end(), 0.0);
+template <typename T>
+void EnvelopeLdlt<T>::SetZero() {
+  std::fill(values_.begin(), values_.end(), T(0));
 }
 
-void EnvelopeLdlt::Factor() {
-  zero_pivots_ = 0;
-  smallest_pivot_ = 1;
-  for (int i = 0; i < size(); ++i) {
-    double* row_i = values_.data() + start_[i] - first_[i];
-    // row_i[j] becomes L(i,j) D(j): what is left of A(i,j) after the columns before j.
-    for (int j = first_[i]; j < i; ++j) {
-      const double* row_j = values_.data() + start_[j] - first_[j];
-      double sum = row_i[j];
-      for (int k = std::max(first_[i], first_[j]); k < j; ++k) sum -= row_i[k] * row_j[k];
-      row_i[j] = sum;
-    }
-    double pivot = row_i[i];
-    double size = std::abs(pivot);
-    for (int j = first_[i]; j < i; ++j) {
-      const double scaled = row_i[j] * inverse_pivot_[j];
-      const double taken = row_i[j] * scaled;
+template <typename T>
+void EnvelopeLdlt<T>::Factor() {
+  using std::abs;
+  using std::min;
+  smallest_pivot_ = T(1);
+  const int n = size();
+  T* const values = values_.data();
+  for (int i = 0; i < n; ++i) {
+    const int first = first_[i];
+    T* const row_i = values + row_[i];
+    T pivot = row_i[i];
+    T size = abs(pivot);
+    // products_[j] = L(i,j) D(j) is what is left of A(i,j) after the columns before j.
+    for (int j = first; j < i; ++j) {
+      const T* const row_j = values + row_[j];
+      T sum = row_i[j];
+      for (int k = std::max(first, first_[j]); k < j; ++k) sum -= products_[k] * row_j[k];
+      const T scaled = sum * inverse_pivot_[j];
+      const T taken = sum * scaled;
       pivot -= taken;
-      size += std::abs(taken);
+      size += abs(taken);
+      products_[j] = sum;
       row_i[j] = scaled;
     }
     row_i[i] = pivot;
-    const bool is_zero = !(std::abs(pivot) > kSingular * size);
-    inverse_pivot_[i] = is_zero ? 0 : 1 / pivot;
-    zero_pivots_ += is_zero;
-    smallest_pivot_ = std::min(smallest_pivot_, is_zero ? 0 : std::abs(pivot) / size);
+    const auto counts = abs(pivot) > kSingular * size;
+    inverse_pivot_[i] = Select(counts, 1.0 / pivot, T(0));
+    smallest_pivot_ = min(smallest_pivot_, Select(counts, abs(pivot) / size, T(0)));
   }
 }
 
-void EnvelopeLdlt::Solve(double* x) const {
-  for (int i = 0; i < size(); ++i) {
-    const double* row = values_.data() + start_[i] - first_[i];
-    double sum = x[i];
+template <typename T>
+void EnvelopeLdlt<T>::Solve(T* x) const {
+  const int n = size();
+  const T* const values = values_.data();
+  for (int i = 0; i < n; ++i) {
+    const T* const row = values + row_[i];
+    T sum = x[i];
     for (int j = first_[i]; j < i; ++j) sum -= row[j] * x[j];
     x[i] = sum;
   }
-  for (int i = 0; i < size(); ++i) x[i] *= inverse_pivot_[i];
-  for (int i = size() - 1; i >= 0; --i) {
-    const double* row = values_.data() + start_[i] - first_[i];
-    for (int j = first_[i]; j < i; ++j) x[j] -= row[j] * x[i];
+  for (int i = 0; i < n; ++i) x[i] *= inverse_pivot_[i];
+  for (int i = n - 1; i > 0; --i) {
+    const T* const row = values + row_[i];
+    const T solved = x[i];
+    for (int j = first_[i]; j < i; ++j) x[j] -= row[j] * solved;
   }
 }
+
+template class EnvelopeLdlt<double>;
+template class EnvelopeLdlt<Packet>;
 
 }  // namespace vmech

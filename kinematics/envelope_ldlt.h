@@ -9,8 +9,11 @@ namespace vmech {
 /// matrices that are positive semidefinite, or saddle points [P C; C' 0] ordered so that every
 /// leading block has C of full column rank. Sized once, then without allocation.
 ///
+/// T is double or Packet (four matrices of one envelope).
+///
 /// A pivot that cancels to less than `kSingular` of the terms it is the difference of is taken as
 /// zero: its unknown is held at zero by Solve, and counted.
+template <typename T>
 class EnvelopeLdlt {
  public:
   /// Of B'B the pivots are sin^2 of the angle between a column of B and the span of those before
@@ -24,26 +27,25 @@ class EnvelopeLdlt {
   int size() const { return static_cast<int>(first_.size()); }
   void SetZero();
   /// Entry (i, j), first[i] <= j <= i, to be filled before Factor.
-  double& operator()(int i, int j) { return values_[start_[i] + j - first_[i]]; }
+  T& operator()(int i, int j) { return values_[row_[i] + j]; }
   /// Rows and columns are exchanged as needed to reach the lower triangle.
-  void Add(int i, int j, double value) { (i >= j ? (*this)(i, j) : (*this)(j, i)) += value; }
+  void Add(int i, int j, const T& value) { (i >= j ? (*this)(i, j) : (*this)(j, i)) += value; }
 
   /// Replaces A by its factors.
   void Factor();
-  /// Number of pivots taken as zero, and the smallest pivot relative to the terms in it.
-  int zero_pivots() const { return zero_pivots_; }
-  double smallest_pivot() const { return smallest_pivot_; }
+  /// The smallest pivot relative to the terms in it; 0 if one was taken as zero.
+  const T& smallest_pivot() const { return smallest_pivot_; }
 
   /// x = A^-1 x.
-  void Solve(double* x) const;
+  void Solve(T* x) const;
 
  private:
   std::vector<int> first_;
-  std::vector<int> start_;
-  std::vector<double> values_;
-  std::vector<double> inverse_pivot_;
-  int zero_pivots_ = 0;
-  double smallest_pivot_ = 1;
+  std::vector<int> row_;  ///< where A(i, 0) would be in values_
+  std::vector<T> values_;
+  std::vector<T> inverse_pivot_;
+  std::vector<T> products_;  ///< L(i,j) D(j) of the row at work
+  T smallest_pivot_ = T(1);
 };
 
 }  // namespace vmech

@@ -18,7 +18,7 @@ Vector6d HandError(const Posed& X_WG, const Posed& X_WH) {
 }
 
 FollowSummary FollowHand(const KinematicTree& tree, const HandTarget& target,
-                         const FollowOptions& options, DependentSolver* dependents,
+                         const FollowOptions& options, DependentSolver<double>* dependents,
                          TreeWorkspace<double>* ws, VectorXd* q) {
   constexpr double kLongestStep = 0.5;  // [rad], or metres: keeps the linearisation honest
   constexpr int kClosingSteps = 3;
@@ -49,7 +49,8 @@ FollowSummary FollowHand(const KinematicTree& tree, const HandTarget& target,
     shift += StackedLoopErrors(tree, *ws);
     step = size;
   }
-  summary.closure = CloseByNewton(tree, options.tolerance, kClosingSteps, dependents, ws, q);
+  summary.closure =
+      CloseByNewton(tree, options.tolerance, kClosingSteps, dependents, ws, q->data());
   summary.converged = step <= options.tolerance && summary.closure <= options.tolerance;
   summary.hand_distance = (target.X_WH.p - PoseInWorld(*ws, target.node, target.X_BG).p).norm();
   return summary;

@@ -32,7 +32,7 @@ struct FollowSummary {
 };
 
 FollowSummary FollowHand(const KinematicTree& tree, const HandTarget& target,
-                         const FollowOptions& options, DependentSolver* dependents,
+                         const FollowOptions& options, DependentSolver<double>* dependents,
                          TreeWorkspace<double>* ws, VectorXd* q);
 
 /// e1 [6]: displacement and rotation vector from G to H, world axes.

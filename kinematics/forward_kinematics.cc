@@ -2,15 +2,16 @@
 
 #include <cmath>
 
+#include "vmech/kinematics/packet.h"
+
 namespace vmech {
 namespace {
 
 /// R Rz(angle).
 template <typename T>
 Matrix3<T> TurnedAboutZ(const Matrix3<T>& R, const T& angle) {
-  using std::cos;
-  using std::sin;
-  const T c = cos(angle), s = sin(angle);
+  T s, c;
+  SinCos(angle, &s, &c);
   Matrix3<T> turned;
   turned.col(0) = c * R.col(0) + s * R.col(1);
   turned.col(1) = c * R.col(1) - s * R.col(0);
@@ -76,8 +77,7 @@ void ForwardKinematics(const KinematicTree& tree, const T* q, TreeWorkspace<T>* 
   for (size_t i = 0; i < tree.nodes.size(); ++i) {
     const TreeNode& node = tree.nodes[i];
     Pose<T>& X = ws->nodes[i].X_WB;
-    X = node.X_PF.cast<T>();
-    if (node.parent >= 0) X = ws->nodes[node.parent].X_WB * X;
+    X = PoseInWorld(*ws, node.parent, node.X_PF);
     switch (node.motion) {
       case NodeMotion::kFixed:
         break;
@@ -144,11 +144,40 @@ void ForwardAccelerations(const KinematicTree& tree, const T* v, const T* vdot,
   }
 }
 
-template void ForwardKinematics<double>(const KinematicTree&, const double*,
-                                        TreeWorkspace<double>*);
-template void ForwardVelocities<double>(const KinematicTree&, const double*,
-                                        TreeWorkspace<double>*);
-template void ForwardAccelerations<double>(const KinematicTree&, const double*, const double*,
-                                           TreeWorkspace<double>*);
+template <typename T>
+void MoveCoordinates(const KinematicTree& tree, const T* dv, T* q) {
+  using std::sqrt;
+  for (const TreeNode& node : tree.nodes) {
+    if (node.motion == NodeMotion::kFixed) continue;
+    if (node.motion != NodeMotion::kSpherical) {
+      q[node.q] += dv[node.v];
+      continue;
+    }
+    const Vector3<T> turn(dv[node.v], dv[node.v + 1], dv[node.v + 2]);
+    const T angle = sqrt(turn.squaredNorm());
+    T sine, cosine;
+    SinCos(0.5 * angle, &sine, &cosine);
+    // sin(angle/2)/angle, whose limit is 1/2.
+    const Vector3<T> e = Select(angle > T(1e-8), sine / angle, T(0.5)) * turn;
+    T* wxyz = q + node.q;
+    const T w = wxyz[0];
+    const Vector3<T> xyz(wxyz[1], wxyz[2], wxyz[3]);
+    const T w_next = w * cosine - xyz.dot(e);
+    const Vector3<T> xyz_next = w * e + cosine * xyz + xyz.cross(e);
+    const T per_length = 1.0 / sqrt(w_next * w_next + xyz_next.squaredNorm());
+    wxyz[0] = per_length * w_next;
+    for (int k = 0; k < 3; ++k) wxyz[1 + k] = per_length * xyz_next[k];
+  }
+}
+
+#define VMECH_INSTANTIATE(T)                                                             \
+  template void ForwardKinematics<T>(const KinematicTree&, const T*, TreeWorkspace<T>*); \
+  template void ForwardVelocities<T>(const KinematicTree&, const T*, TreeWorkspace<T>*); \
+  template void ForwardAccelerations<T>(const KinematicTree&, const T*, const T*,        \
+                                        TreeWorkspace<T>*);                              \
+  template void MoveCoordinates<T>(const KinematicTree&, const T*, T*);
+VMECH_INSTANTIATE(double)
+VMECH_INSTANTIATE(Packet)
+#undef VMECH_INSTANTIATE
 
 }  // namespace vmech

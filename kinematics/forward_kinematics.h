@@ -18,6 +18,11 @@ template <typename T>
 void ForwardAccelerations(const KinematicTree& tree, const T* v, const T* vdot,
                           TreeWorkspace<T>* ws);
 
+/// q (+) dv in place: coordinates [nq] after moving by dv [nv] in the tangent space; quaternions
+/// are brought back to unit length.
+template <typename T>
+void MoveCoordinates(const KinematicTree& tree, const T* dv, T* q);
+
 /// Pose of a frame that is fixed in a node (node -1: the ground), from its pose X_BQ there.
 template <typename T>
 Pose<T> PoseInWorld(const TreeWorkspace<T>& ws, int node, const Posed& X_BQ);
@@ -39,7 +44,8 @@ JointAxis<T> AxisInWorld(const KinematicTree& tree, const TreeWorkspace<T>& ws, 
 template <typename T>
 Pose<T> PoseInWorld(const TreeWorkspace<T>& ws, int node, const Posed& X_BQ) {
   if (node < 0) return X_BQ.cast<T>();
-  return ws.nodes[node].X_WB * X_BQ.cast<T>();
+  const Pose<T>& X_WB = ws.nodes[node].X_WB;
+  return {X_WB.R * X_BQ.R, X_WB.R * X_BQ.p + X_WB.p};
 }
 
 template <typename T>

@@ -1,6 +1,7 @@
 #include "vmech/kinematics/jacobian.h"
 
 #include "vmech/kinematics/forward_kinematics.h"
+#include "vmech/kinematics/packet.h"
 
 namespace vmech {
 
@@ -19,10 +20,11 @@ void PointJacobian(const KinematicTree& tree, const TreeWorkspace<double>& ws, i
   }
 }
 
-Vector6d PointTwist(const TreeWorkspace<double>& ws, int node, const Vector3d& p_WQ) {
-  Vector6d V = Vector6d::Zero();
+template <typename T>
+Vector6<T> PointTwist(const TreeWorkspace<T>& ws, int node, const Vector3<T>& p_WQ) {
+  Vector6<T> V = Vector6<T>::Zero();
   if (node < 0) return V;
-  const NodeState<double>& s = ws.nodes[node];
+  const NodeState<T>& s = ws.nodes[node];
   V << s.v + s.w.cross(p_WQ - s.X_WB.p), s.w;
   return V;
 }
@@ -36,7 +38,8 @@ Vector6d PointAcceleration(const TreeWorkspace<double>& ws, int node, const Vect
   return A;
 }
 
-void FreeMotions(const TreeWorkspace<double>& ws, DependentSolver* dependents, MatrixXd* N) {
+void FreeMotions(const TreeWorkspace<double>& ws, DependentSolver<double>* dependents,
+                 MatrixXd* N) {
   const CoordinatePartition& partition = dependents->partition();
   N->setZero();
   Eigen::Index column = 0;
@@ -48,5 +51,9 @@ void FreeMotions(const TreeWorkspace<double>& ws, DependentSolver* dependents, M
     }
   }
 }
+
+template Vector6d PointTwist<double>(const TreeWorkspace<double>&, int, const Vector3d&);
+template Vector6<Packet> PointTwist<Packet>(const TreeWorkspace<Packet>&, int,
+                                            const Vector3<Packet>&);
 
 }  // namespace vmech

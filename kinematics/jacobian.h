@@ -11,12 +11,13 @@ void PointJacobian(const KinematicTree& tree, const TreeWorkspace<double>& ws, i
                    const Vector3d& p_WQ, MatrixXd* J);
 
 /// Twist and acceleration [linear; angular] of a point Q of a node. Need w, v and alpha, a.
-Vector6d PointTwist(const TreeWorkspace<double>& ws, int node, const Vector3d& p_WQ);
+template <typename T>
+Vector6<T> PointTwist(const TreeWorkspace<T>& ws, int node, const Vector3<T>& p_WQ);
 Vector6d PointAcceleration(const TreeWorkspace<double>& ws, int node, const Vector3d& p_WQ);
 
 /// The motions that the loops allow, N [nv, independent]: column k moves the k-th of
 /// [driven, idle] at unit rate and the other independent velocities not at all, C N = 0. Needs
 /// LoopJacobian in ws and a factored `dependents`. `N` must have that size.
-void FreeMotions(const TreeWorkspace<double>& ws, DependentSolver* dependents, MatrixXd* N);
+void FreeMotions(const TreeWorkspace<double>& ws, DependentSolver<double>* dependents, MatrixXd* N);
 
 }  // namespace vmech

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "vmech/kinematics/forward_kinematics.h"
+
 namespace vmech {
 namespace {
 
@@ -198,23 +200,7 @@ VectorXd StartCoordinates(const KinematicTree& tree) {
 }
 
 void Integrate(const KinematicTree& tree, const VectorXd& dv, VectorXd* q) {
-  for (const TreeNode& node : tree.nodes) {
-    if (node.motion == NodeMotion::kFixed) continue;
-    if (node.motion != NodeMotion::kSpherical) {
-      (*q)[node.q] += dv[node.v];
-      continue;
-    }
-    const Vector3d turn = dv.segment<3>(node.v);
-    const double angle = turn.norm();
-    // sin(angle/2)/angle, whose limit is 1/2.
-    const double scale = angle > 1e-8 ? std::sin(angle / 2) / angle : 0.5;
-    const Vector3d e = scale * turn;
-    const Eigen::Quaterniond step(std::cos(angle / 2), e.x(), e.y(), e.z());
-    Eigen::Map<Eigen::Vector4d> wxyz(q->data() + node.q);
-    const Eigen::Quaterniond now(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
-    const Eigen::Quaterniond next = (now * step).normalized();
-    wxyz << next.w(), next.x(), next.y(), next.z();
-  }
+  MoveCoordinates(tree, dv.data(), q->data());
 }
 
 std::string NameOfVelocity(const KinematicTree& tree, int v) {

@@ -4,6 +4,8 @@
 #include <numbers>
 
 #include "vmech/kinematics/forward_kinematics.h"
+#include "vmech/kinematics/jacobian.h"
+#include "vmech/kinematics/packet.h"
 
 namespace vmech {
 namespace {
@@ -47,6 +49,34 @@ T ScrewTurn(const Matrix3<T>& R_FM, const T& travel, double pitch) {
   constexpr double kTurn = 2 * std::numbers::pi;
   const T angle = TurnAboutZ(R_FM);
   return angle + kTurn * round((travel / pitch - angle) / kTurn);
+}
+
+/// Is the joint assembled more than a quarter turn from where it belongs, so that small errors mean
+/// nothing?
+template <typename T>
+auto FacesBackwards(const Loop& loop, const LoopState<T>& state) {
+  switch (loop.type) {
+    case JointType::kSpherical:
+    case JointType::kUniversal:
+      return T(0) > T(1);
+    case JointType::kPrismatic:
+    case JointType::kWeld:
+      return state.R_FM.trace() < T(1);
+    default:
+      return state.R_FM(2, 2) < T(0);
+  }
+}
+
+template <typename T>
+Vector3<T> RotationVector(const Matrix3<T>& R) {
+  Vector3<T> turn;
+  Vector3d lanes[kLanesOf<T>];
+  for (int lane = 0; lane < kLanesOf<T>; ++lane) {
+    const Eigen::AngleAxisd rotation(Lane(R, lane));
+    lanes[lane] = rotation.angle() * rotation.axis();
+  }
+  for (int k = 0; k < 3; ++k) turn[k] = FromLanes<T>([&](int lane) { return lanes[lane][k]; });
+  return turn;
 }
 
 /// Velocity, angular velocity and acceleration of a point Q of the world that moves with a node.
@@ -126,40 +156,44 @@ void LoopAccelerationBias(const KinematicTree& tree, TreeWorkspace<T>* ws) {
   }
 }
 
-Vector3d CutJointCoordinates(const Loop& loop, const LoopState<double>& state) {
-  const Matrix3d& R = state.R_FM;
-  const Vector3d p = state.R_WF.transpose() * state.p_FM_W;
+template <typename T>
+Vector3<T> CutJointCoordinates(const Loop& loop, const LoopState<T>& state) {
+  using std::atan2;
+  const Matrix3<T>& R = state.R_FM;
+  const Vector3<T> p = state.R_WF.transpose() * state.p_FM_W;
+  const T zero(0);
   switch (loop.type) {
     case JointType::kRevolute:
-      return {TurnAboutZ(R), 0, 0};
+      return {TurnAboutZ(R), zero, zero};
     case JointType::kPrismatic:
-      return {p.z(), 0, 0};
+      return {p.z(), zero, zero};
     case JointType::kCylindrical:
-      return {p.z(), TurnAboutZ(R), 0};
+      return {p.z(), TurnAboutZ(R), zero};
     case JointType::kScrew:
-      return {ScrewTurn(R, p.z(), loop.pitch), 0, 0};
+      return {ScrewTurn<T>(R, p.z(), loop.pitch), zero, zero};
     case JointType::kUniversal:
-      return {std::atan2(R(2, 1), R(1, 1)), std::atan2(R(0, 2), R(0, 0)), 0};
-    case JointType::kSpherical: {
-      const Eigen::AngleAxisd turn(R);
-      return turn.angle() * turn.axis();
-    }
+      return {atan2(R(2, 1), R(1, 1)), atan2(R(0, 2), R(0, 0)), zero};
+    case JointType::kSpherical:
+      return RotationVector(R);
     case JointType::kPlanar:
       return {p.x(), p.y(), TurnAboutZ(R)};
     case JointType::kWeld:
       break;
   }
-  return Vector3d::Zero();
+  return Vector3<T>::Zero();
 }
 
-CutJointFreedoms FreedomsOfCutJoint(const Loop& loop, const LoopState<double>& state) {
-  auto along = [](const Vector3d& axis) {
-    return (Vector6d() << axis, Vector3d::Zero()).finished();
+template <typename T>
+CutJointFreedoms<T> FreedomsOfCutJoint(const Loop& loop, const LoopState<T>& state) {
+  const Vector3<T> zero = Vector3<T>::Zero();
+  auto twist = [](const Vector3<T>& linear, const Vector3<T>& angular) {
+    Vector6<T> V;
+    V << linear, angular;
+    return V;
   };
-  auto about = [](const Vector3d& axis) {
-    return (Vector6d() << Vector3d::Zero(), axis).finished();
-  };
-  const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ();
+  auto along = [&](const Vector3<T>& axis) { return twist(axis, zero); };
+  auto about = [&](const Vector3<T>& axis) { return twist(zero, axis); };
+  const Vector3<T> x = Vector3<T>::UnitX(), y = Vector3<T>::UnitY(), z = Vector3<T>::UnitZ();
   switch (loop.type) {
     case JointType::kRevolute:
       return {1, {about(z)}};
@@ -168,7 +202,7 @@ CutJointFreedoms FreedomsOfCutJoint(const Loop& loop, const LoopState<double>& s
     case JointType::kCylindrical:
       return {2, {along(z), about(z)}};
     case JointType::kScrew:
-      return {1, {loop.pitch * along(z) + about(z)}};
+      return {1, {twist(loop.pitch * z, z)}};
     case JointType::kUniversal:
       return {2, {about(x), about(state.R_FM.col(1))}};
     case JointType::kSpherical:
@@ -181,16 +215,17 @@ CutJointFreedoms FreedomsOfCutJoint(const Loop& loop, const LoopState<double>& s
   return {};
 }
 
-Vector3d CutJointRates(const KinematicTree& tree, const TreeWorkspace<double>& ws, int loop_index) {
+template <typename T>
+Vector3<T> CutJointRates(const KinematicTree& tree, const TreeWorkspace<T>& ws, int loop_index) {
   const Loop& loop = tree.loops[loop_index];
-  const LoopState<double>& s = ws.loops[loop_index];
+  const LoopState<T>& s = ws.loops[loop_index];
   const JointPlacement& place = tree.placements[loop.joint];
-  const PointMotion<double> A = MotionAt(ws, place.first_node, s.p_WM);
-  const PointMotion<double> B = MotionAt(ws, place.second_node, s.p_WM);
-  Vector6d V_FM;
-  V_FM << s.R_WF.transpose() * (B.v - A.v), s.R_WF.transpose() * (B.w - A.w);
-  const CutJointFreedoms freedoms = FreedomsOfCutJoint(loop, s);
-  Vector3d rates = Vector3d::Zero();
+  const Vector6<T> V_W =
+      PointTwist(ws, place.second_node, s.p_WM) - PointTwist(ws, place.first_node, s.p_WM);
+  Vector6<T> V_FM;
+  V_FM << s.R_WF.transpose() * V_W.template head<3>(), s.R_WF.transpose() * V_W.template tail<3>();
+  const CutJointFreedoms<T> freedoms = FreedomsOfCutJoint(loop, s);
+  Vector3<T> rates = Vector3<T>::Zero();
   for (int i = 0; i < freedoms.count; ++i) {
     rates[i] = freedoms.twist_F[i].dot(V_FM) / freedoms.twist_F[i].squaredNorm();
   }
@@ -227,35 +262,33 @@ VectorXd LoopRowScale(const KinematicTree& tree) {
   return scale;
 }
 
-bool IsLengthRow(JointType type, int row) {
-  switch (type) {
-    case JointType::kPrismatic:
-    case JointType::kCylindrical:
-      return row < 2;
-    case JointType::kScrew:
-      return row < 2 || row == 4;
-    case JointType::kPlanar:
-      return row < 1;
-    default:
-      return row < 3;
+template <typename T>
+T LargestLoopError(const KinematicTree& tree, const TreeWorkspace<T>& ws) {
+  using std::abs;
+  using std::max;
+  const double per_length = 1 / tree.length;
+  T largest(0);
+  for (size_t l = 0; l < tree.loops.size(); ++l) {
+    const Loop& loop = tree.loops[l];
+    for (int i = 0; i < loop.rows; ++i) {
+      const T error = abs(ws.loops[l].e2[i]);
+      largest = max(largest, IsLengthRow(loop.type, i) ? per_length * error : error);
+    }
+    largest = Select(FacesBackwards(loop, ws.loops[l]), max(largest, T(2)), largest);
   }
+  return largest;
 }
 
-bool FacesBackwards(const Loop& loop, const LoopState<double>& state) {
-  switch (loop.type) {
-    case JointType::kSpherical:
-    case JointType::kUniversal:
-      return false;
-    case JointType::kPrismatic:
-    case JointType::kWeld:
-      return state.R_FM.trace() < 1;
-    default:
-      return state.R_FM(2, 2) < 0;
-  }
-}
-
-template void LoopErrors<double>(const KinematicTree&, TreeWorkspace<double>*);
-template void LoopJacobian<double>(const KinematicTree&, TreeWorkspace<double>*);
-template void LoopAccelerationBias<double>(const KinematicTree&, TreeWorkspace<double>*);
+#define VMECH_INSTANTIATE(T)                                                                \
+  template void LoopErrors<T>(const KinematicTree&, TreeWorkspace<T>*);                     \
+  template void LoopJacobian<T>(const KinematicTree&, TreeWorkspace<T>*);                   \
+  template void LoopAccelerationBias<T>(const KinematicTree&, TreeWorkspace<T>*);           \
+  template Vector3<T> CutJointCoordinates<T>(const Loop&, const LoopState<T>&);             \
+  template CutJointFreedoms<T> FreedomsOfCutJoint<T>(const Loop&, const LoopState<T>&);     \
+  template Vector3<T> CutJointRates<T>(const KinematicTree&, const TreeWorkspace<T>&, int); \
+  template T LargestLoopError<T>(const KinematicTree&, const TreeWorkspace<T>&);
+VMECH_INSTANTIATE(double)
+VMECH_INSTANTIATE(Packet)
+#undef VMECH_INSTANTIATE
 
 }  // namespace vmech

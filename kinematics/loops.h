@@ -44,24 +44,30 @@ Wrench<T> WrenchOfMultipliers(const Loop& loop, const LoopState<T>& state, const
 
 /// Coordinates of a cut joint that has turned and shifted freely, from the poses of its anchors
 /// [FreedomsOf(type)]; for a spherical joint the rotation vector. Angles within +-pi.
-Vector3d CutJointCoordinates(const Loop& loop, const LoopState<double>& state);
+template <typename T>
+Vector3<T> CutJointCoordinates(const Loop& loop, const LoopState<T>& state);
 
 /// Unit twists [v; w] of M in F of the freedoms of a cut joint, axes of F.
+template <typename T>
 struct CutJointFreedoms {
   int count = 0;
-  Vector6d twist_F[3];
+  Vector6<T> twist_F[3];
 };
-CutJointFreedoms FreedomsOfCutJoint(const Loop& loop, const LoopState<double>& state);
+template <typename T>
+CutJointFreedoms<T> FreedomsOfCutJoint(const Loop& loop, const LoopState<T>& state);
 
 /// Rates of the coordinates of a cut joint [FreedomsOf(type)]; for a spherical joint the angular
 /// velocity of M in F, axes of M. Needs w, v and LoopErrors.
-Vector3d CutJointRates(const KinematicTree& tree, const TreeWorkspace<double>& ws, int loop);
+template <typename T>
+Vector3<T> CutJointRates(const KinematicTree& tree, const TreeWorkspace<T>& ws, int loop);
 
 /// Is equation `row` of a loop one of lengths (in metres)?
-bool IsLengthRow(JointType type, int row);
-/// Is the joint assembled more than a quarter turn from where it belongs, so that small errors mean
-/// nothing?
-bool FacesBackwards(const Loop& loop, const LoopState<double>& state);
+inline bool IsLengthRow(JointType type, int row);
+
+/// Largest loop error, lengths divided by the characteristic length. A loop assembled half a turn
+/// the wrong way counts with its full error. Needs LoopErrors.
+template <typename T>
+T LargestLoopError(const KinematicTree& tree, const TreeWorkspace<T>& ws);
 
 /// Dense C [rows, nv] for the analyses that need it whole. Needs LoopJacobian.
 MatrixXd DenseLoopJacobian(const KinematicTree& tree, const TreeWorkspace<double>& ws);
@@ -71,6 +77,20 @@ VectorXd StackedLoopErrors(const KinematicTree& tree, const TreeWorkspace<double
 VectorXd LoopRowScale(const KinematicTree& tree);
 
 // Small and everywhere: inline.
+
+bool IsLengthRow(JointType type, int row) {
+  switch (type) {
+    case JointType::kPrismatic:
+    case JointType::kCylindrical:
+      return row < 2;
+    case JointType::kScrew:
+      return row < 2 || row == 4;
+    case JointType::kPlanar:
+      return row < 1;
+    default:
+      return row < 3;
+  }
+}
 
 template <typename T>
 Vector6<T> ProjectOnRows(const Loop& loop, const LoopState<T>& state, const Vector3<T>& linear,

@@ -129,7 +129,7 @@ int main(int argc, char** argv) {
   const int pivot = FindJoint(mechanism, "rocker_pivot");
   double residual = 0;
   for (const PoseLoads& pose : result.poses) {
-    const double theta = pose.drives[0].position, psi = pose.joint_positions[pivot][0];
+    const double theta = pose.drives[0].position, psi = pose.joints[pivot].position[0];
     residual = std::max(
         residual, std::abs(d / a * std::cos(psi) - d / c * std::cos(theta) +
                            (a * a - b * b + c * c + d * d) / (2 * a * c) - std::cos(theta - psi)));
@@ -154,8 +154,8 @@ int main(int argc, char** argv) {
   for (int i = 0; i < poses; ++i) {
     const PoseLoads& pose = result.poses[i];
     for (plot::Series& series : angles.series) series.x.push_back(360.0 * i / poses);
-    angles.series[0].y.push_back(pose.joint_positions[pivot][0] * degrees);
-    angles.series[1].y.push_back(std::abs(pose.joint_positions[rocker_pin][0]) * degrees);
+    angles.series[0].y.push_back(pose.joints[pivot].position[0] * degrees);
+    angles.series[1].y.push_back(std::abs(pose.joints[rocker_pin].position[0]) * degrees);
   }
   notebook.Show(angles);
 
@@ -193,7 +193,7 @@ int main(int argc, char** argv) {
   }
   for (int i = 0; i < poses; ++i) {
     torque.series[0].x.push_back(360.0 * i / poses);
-    torque.series[0].y.push_back(result.poses[i].drive_forces[0]);
+    torque.series[0].y.push_back(result.poses[i].drives[0].force);
   }
   notebook.Show(forces);
   notebook.Show(torque);
@@ -235,8 +235,8 @@ int main(int argc, char** argv) {
   //%%
   double sum = 0, peak = 0;
   for (const PoseLoads& pose : result.poses) {
-    sum += pose.drive_forces[0];
-    peak = std::max(peak, std::abs(pose.drive_forces[0]));
+    sum += pose.drives[0].force;
+    peak = std::max(peak, std::abs(pose.drives[0].force));
   }
   notebook.Print(fmt::format("peak torque {:.2f} N m", peak));
   notebook.CheckNear("power balance, relative", result.max_power_error, 0, 1e-9);

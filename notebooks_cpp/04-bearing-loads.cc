@@ -269,8 +269,8 @@ int main(int argc, char** argv) {
   double motion_change = 0, rule_change = 0;
   for (int i = 0; i < poses; ++i) {
     motion_change =
-        std::max(motion_change, std::abs(isostatic.poses[i].joint_positions[pivot][0] -
-                                         by_stiffness.poses[i].joint_positions[pivot][0]));
+        std::max(motion_change, std::abs(isostatic.poses[i].joints[pivot].position[0] -
+                                         by_stiffness.poses[i].joints[pivot].position[0]));
     for (size_t j = 0; j < four_bar.joints.size(); ++j) {
       rule_change = std::max(rule_change, (isostatic.poses[i].joints[j].Stacked() -
                                            isostatic_by_norm.poses[i].joints[j].Stacked())

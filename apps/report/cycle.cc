@@ -15,7 +15,7 @@ constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
 constexpr double kRpm = 30 / std::numbers::pi;  // per rad/s
 constexpr double kSteady = 1e-9;                // relative change of a speed that is rounding
 
-bool RunsOneWay(const std::vector<PoseLoads>& poses) {
+bool RunsOneWay(const PoseArray<PoseLoads>& poses) {
   bool forward = true, backward = true;
   for (size_t i = 1; i < poses.size(); ++i) {
     const double step = poses[i].drives[0].position - poses[i - 1].drives[0].position;
@@ -47,7 +47,7 @@ void AddMarks(Cycle* cycle) {
   }
 }
 
-std::string SpeedInWords(const std::vector<PoseLoads>& poses, size_t drive, bool rotation) {
+std::string SpeedInWords(const PoseArray<PoseLoads>& poses, size_t drive, bool rotation) {
   double min = poses.front().drives[drive].velocity, max = min;
   for (const PoseLoads& pose : poses) {
     min = std::min(min, pose.drives[drive].velocity);
@@ -96,7 +96,7 @@ Cycle CycleOf(const LoadStudy& study, const LoadStudyResult& result) {
 }
 
 std::string DescribeMotion(const LoadStudy& study, const LoadStudyResult& result) {
-  const std::vector<PoseLoads>& poses = result.poses;
+  const PoseArray<PoseLoads>& poses = result.poses;
   std::string words;
   for (size_t i = 0; i < study.drives.size(); ++i) {
     const JointDrive& drive = study.drives[i];

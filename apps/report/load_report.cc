@@ -45,9 +45,9 @@ void CheckReport(const Report& report) {
   const size_t joints = report.study.mechanism.joints.size();
   const auto fits = [&](const PoseLoads& pose) {
     return pose.joints.size() == joints && pose.drives.size() == report.study.drives.size() &&
-           pose.drive_forces.size() == report.study.drives.size();
+           pose.drives.size() == report.study.drives.size();
   };
-  const std::vector<PoseLoads>& poses = report.result.poses;
+  const PoseArray<PoseLoads>& poses = report.result.poses;
   if (poses.empty()) throw std::invalid_argument("report: the study has no poses");
   const bool bearings_fit = report.file.bearings.size() == report.outcome.bearings.size();
   if (!bearings_fit || report.result.certainty.size() != joints ||
@@ -79,7 +79,7 @@ html::Tile LargestForceTile(const Report& report, const Cycle& cycle) {
 double PeakDriveForce(const LoadStudyResult& result, size_t drive) {
   double peak = 0;
   for (const PoseLoads& pose : result.poses) {
-    peak = std::max(peak, std::abs(pose.drive_forces[drive]));
+    peak = std::max(peak, std::abs(pose.drives[drive].force));
   }
   return peak;
 }
@@ -99,9 +99,9 @@ size_t HardestDrive(const Report& report) {
 html::Tile DriveTile(const Report& report, const Cycle& cycle, size_t drive) {
   double peak = 0, sum = 0;
   size_t at = 0;
-  const std::vector<PoseLoads>& poses = report.result.poses;
+  const PoseArray<PoseLoads>& poses = report.result.poses;
   for (size_t i = 0; i < poses.size(); ++i) {
-    const double force = poses[i].drive_forces[drive];
+    const double force = poses[i].drives[drive].force;
     sum += force;
     if (std::abs(force) > std::abs(peak)) peak = force, at = i;
   }
@@ -180,7 +180,7 @@ plot::LinePlot DrivePlot(const LoadStudy& study, const LoadStudyResult& result, 
     if (DriveTurns(study, i) != turning) continue;
     const size_t joint = static_cast<size_t>(study.drives[i].joint);
     plot::Series series{study.mechanism.joints[joint].name, cycle.values, {}};
-    for (const PoseLoads& pose : result.poses) series.y.push_back(pose.drive_forces[i]);
+    for (const PoseLoads& pose : result.poses) series.y.push_back(pose.drives[i].force);
     series.mark_peak = study.drives.size() < 4;
     plot.series.push_back(std::move(series));
   }

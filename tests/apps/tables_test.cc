@@ -36,8 +36,8 @@ LoadStudyResult TurningResult() {
     pose.time = 0.001 * i;
     pose.drives.resize(1);
     pose.drives[0].position = angle;
-    pose.drive_forces = {-0.0};
-    pose.joints = {Wrenchd{{1.0 / 3, -0.0, 1e-300}, {1e22, -2.5e-7, angle}}};
+    pose.drives[0].force = -0.0;
+    pose.joints = {{Wrenchd{{1.0 / 3, -0.0, 1e-300}, {1e22, -2.5e-7, angle}}}};
     pose.links.resize(2);
     pose.links[1].X_WL.R = Eigen::AngleAxisd(angle, Vector3d::UnitZ()).toRotationMatrix();
     result.poses.push_back(pose);

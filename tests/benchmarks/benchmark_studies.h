@@ -12,4 +12,11 @@ LoadStudy SliderCrankStudy(int poses);
 /// multibody problems, lim.ii.udc.es/mbsbenchmark). It swings from upright to 0.8 rad at 1 rad/s.
 LoadStudy WindowStudy(int windows, int poses);
 
+/// The loads alone, without the motion of every link.
+inline LoadStudyOptions JointLoadsOnly() {
+  LoadStudyOptions options;
+  options.link_motions = false;
+  return options;
+}
+
 }  // namespace vmech

@@ -5,31 +5,50 @@
 #include "benchmark_studies.h"
 #include "kernels.h"
 #include "vmech/dynamics/load_model.h"
+#include "vmech/kinematics/packet.h"
 
 namespace vmech {
 namespace {
 
-/// One closed pose of the slider-crank in space: velocities, accelerations, every joint wrench.
+/// Closed poses of the slider-crank in space, as many at a time as T has lanes: velocities,
+/// accelerations, every joint wrench.
+template <typename T>
 std::function<void()> SliderCrankPose() {
   struct State {
     LoadStudy study = SliderCrankStudy(720);
     PreparedStudy prepared = PrepareStudy(study);
-    std::vector<PoseInput> inputs = TrackMotion(study, prepared, 1e-13);
-    LoadWorkspace ws{prepared.model};
-    PoseLoads loads;
+    Motion motion = TrackMotion(study, prepared, 1e-13);
+    LoadWorkspace<T> ws{prepared.model};
+    std::vector<PoseLoads> loads{kLanesOf<T>, MakePoseLoads(prepared.model, false)};
     size_t next = 0;
   };
   auto state = std::make_shared<State>();
-  SizePoseLoads(state->prepared.model, &state->loads);
   return [state] {
-    const PoseInput& input = state->inputs[state->next++ % state->inputs.size()];
-    if (!EvaluatePoseLoads(state->prepared.model, input, &state->ws, &state->loads)) std::abort();
+    const LoadModel& model = state->prepared.model;
+    const size_t pose = state->next;
+    if (!EvaluatePoseLoads(model, state->motion, pose, &state->ws)) std::abort();
+    StorePoseLoads(model, state->motion, pose, state->ws, state->loads.data());
+    state->next = (pose + kLanesOf<T>) % state->motion.size();
   };
+}
+
+/// A tenth of these poses, followed from one to the next.
+std::function<void()> SliderCrankTrack() {
+  struct State {
+    LoadStudy study = SliderCrankStudy(720);
+    PreparedStudy prepared = PrepareStudy(study);
+  };
+  auto state = std::make_shared<State>();
+  state->study.times.resize(72);
+  return [state] { TrackMotion(state->study, state->prepared, 1e-13); };
 }
 
 }  // namespace
 }  // namespace vmech
 
 int main(int argc, char** argv) {
-  return vmech::RunKernel({{"slider_crank_pose", vmech::SliderCrankPose}}, argc, argv);
+  return vmech::RunKernel({{"slider_crank_pose", vmech::SliderCrankPose<double>},
+                           {"slider_crank_packet", vmech::SliderCrankPose<vmech::Packet>},
+                           {"slider_crank_track", vmech::SliderCrankTrack}},
+                          argc, argv);
 }

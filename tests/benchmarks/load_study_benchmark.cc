@@ -18,7 +18,7 @@ void CountPoses(benchmark::State& state, size_t poses) {
 
 void SliderCrankPoses(benchmark::State& state) {
   const LoadStudy study = SliderCrankStudy(static_cast<int>(state.range(0)));
-  for (auto _ : state) benchmark::DoNotOptimize(RunLoadStudy(study));
+  for (auto _ : state) benchmark::DoNotOptimize(RunLoadStudy(study, JointLoadsOnly()));
   CountPoses(state, study.times.size());
   state.SetComplexityN(state.range(0));
 }
@@ -26,7 +26,7 @@ BENCHMARK(SliderCrankPoses)->RangeMultiplier(4)->Range(720, 720 * 64)->Complexit
 
 void WindowFourBarPoses(benchmark::State& state) {
   const LoadStudy study = WindowStudy(static_cast<int>(state.range(0)), 720);
-  for (auto _ : state) benchmark::DoNotOptimize(RunLoadStudy(study));
+  for (auto _ : state) benchmark::DoNotOptimize(RunLoadStudy(study, JointLoadsOnly()));
   CountPoses(state, study.times.size());
   state.SetComplexityN(state.range(0));
 }

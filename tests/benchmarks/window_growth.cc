@@ -10,6 +10,7 @@
 #include "vmech/apps/plot/line_plot.h"
 #include "vmech/apps/plot/style.h"
 #include "vmech/dynamics/load_model.h"
+#include "vmech/kinematics/packet.h"
 
 namespace vmech {
 namespace {
@@ -19,14 +20,15 @@ double MicrosecondsPerPose(int windows) {
   constexpr int kPoses = 400, kRepetitions = 9;
   const LoadStudy study = WindowStudy(windows, kPoses);
   const PreparedStudy prepared = PrepareStudy(study);
-  LoadWorkspace ws(prepared.model);
-  PoseLoads loads;
-  SizePoseLoads(prepared.model, &loads);
+  LoadWorkspace<Packet> ws(prepared.model);
+  std::vector<PoseLoads> loads(Packet::kLanes, MakePoseLoads(prepared.model));
   std::vector<double> times;
   for (int i = 0; i < kRepetitions; ++i) {
     const auto start = std::chrono::steady_clock::now();
-    for (const PoseInput& input : TrackMotion(study, prepared, 1e-13)) {
-      if (!EvaluatePoseLoads(prepared.model, input, &ws, &loads)) return 0;
+    const Motion motion = TrackMotion(study, prepared, 1e-13);
+    for (size_t pose = 0; pose < motion.size(); pose += Packet::kLanes) {
+      if (!EvaluatePoseLoads(prepared.model, motion, pose, &ws)) return 0;
+      StorePoseLoads(prepared.model, motion, pose, ws, loads.data());
     }
     const std::chrono::duration<double, std::micro> elapsed =
         std::chrono::steady_clock::now() - start;

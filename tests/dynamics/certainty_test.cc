@@ -49,10 +49,10 @@ class EveryVerdict : public testing::TestWithParam<DrivenExample> {};
 TEST_P(EveryVerdict, IsThatOfTheNullSpaceOfAllFreeBodies) {
   const LoadStudy study = StudyOf(GetParam().name);
   const PreparedStudy prepared = PrepareStudy(study);
-  const std::vector<PoseInput> inputs = TrackMotion(study, prepared, 1e-13);
+  const Motion motion = TrackMotion(study, prepared, 1e-13);
   const LoadStudyResult result = RunLoadStudy(study);
   for (const size_t i : {size_t{5}, size_t{12}, size_t{21}}) {
-    const auto verdict = JudgeCertainty(prepared.model.tree, prepared.model.partition, inputs[i].q);
+    const auto verdict = JudgeCertainty(prepared.model.tree, prepared.model.partition, motion.q(i));
     const auto expected = LettersOfFreeBodies(study, result.poses[i]);
     for (size_t j = 0; j < verdict.size(); ++j) {
       EXPECT_EQ(Letters(verdict[j]), expected[j]) << study.mechanism.joints[j].name << ", " << i;

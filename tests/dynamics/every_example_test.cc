@@ -22,8 +22,8 @@ class EveryDrivenExample : public testing::TestWithParam<DrivenExample> {
 
   double PassiveForceOf(const PoseLoads& pose, size_t joint, int freedom) const {
     const Passive& p = mechanism_.joints[joint].passive[freedom];
-    return -p.stiffness * (pose.joint_positions[joint][freedom] - p.rest) -
-           p.viscous * pose.joint_rates[joint][freedom];
+    return -p.stiffness * (pose.joints[joint].position[freedom] - p.rest) -
+           p.viscous * pose.joints[joint].rate[freedom];
   }
 
   double DriveForceOf(const PoseLoads& pose, size_t joint, int freedom) const {
@@ -31,7 +31,7 @@ class EveryDrivenExample : public testing::TestWithParam<DrivenExample> {
     for (size_t k = 0; k < study_.drives.size(); ++k) {
       const JointDrive& drive = study_.drives[k];
       if (drive.joint == static_cast<int>(joint) && drive.freedom == freedom) {
-        force += pose.drive_forces[k];
+        force += pose.drives[k].force;
       }
     }
     return force;
@@ -55,7 +55,7 @@ TEST_P(EveryDrivenExample, PowerOfDrivesIsWhatTheLinksAndPassiveForcesTakeUp) {
       largest = std::max(largest, std::abs(term));
     };
     for (size_t k = 0; k < study_.drives.size(); ++k) {
-      count(&power, pose.drive_forces[k] * study_.drives[k].law.At(pose.time).velocity);
+      count(&power, pose.drives[k].force * study_.drives[k].law.At(pose.time).velocity);
     }
     const std::vector<Wrenchd> needed = NeededOfJoints(study_, pose);
     for (size_t i = 0; i < needed.size(); ++i) {
@@ -66,7 +66,7 @@ TEST_P(EveryDrivenExample, PowerOfDrivesIsWhatTheLinksAndPassiveForcesTakeUp) {
     for (size_t j = 0; j < mechanism_.joints.size(); ++j) {
       for (size_t k = 0; k < mechanism_.joints[j].passive.size(); ++k) {
         const int freedom = static_cast<int>(k);
-        count(&taken, -PassiveForceOf(pose, j, freedom) * pose.joint_rates[j][freedom]);
+        count(&taken, -PassiveForceOf(pose, j, freedom) * pose.joints[j].rate[freedom]);
       }
     }
     EXPECT_GT(largest, 0);
@@ -119,7 +119,7 @@ TEST_P(EveryDrivenExample, LinksMoveAgainstEachOtherOnlyAsTheirJointsDo) {
   for (const PoseLoads& pose : result_.poses) {
     for (size_t j = 0; j < mechanism_.joints.size(); ++j) {
       const FreeJoint free = CutFree(mechanism_, pose.links, static_cast<int>(j));
-      VectorXd rates = pose.joint_rates[j].head(free.freedoms.cols());
+      VectorXd rates = pose.joints[j].rate.head(free.freedoms.cols());
       if (mechanism_.joints[j].type == JointType::kSpherical) rates = free.R_FM * rates;
       const Vector6d V = RelativeTwist(mechanism_, pose.links, static_cast<int>(j));
       EXPECT_LE((V - free.freedoms * rates).norm(), kBalance * (1 + V.norm()))
@@ -127,8 +127,8 @@ TEST_P(EveryDrivenExample, LinksMoveAgainstEachOtherOnlyAsTheirJointsDo) {
     }
     for (size_t k = 0; k < study_.drives.size(); ++k) {
       const MotionSample law = study_.drives[k].law.At(pose.time);
-      EXPECT_NEAR(pose.joint_positions[study_.drives[k].joint][0], law.position, kBalance);
-      EXPECT_NEAR(pose.joint_rates[study_.drives[k].joint][0], law.velocity, kBalance);
+      EXPECT_NEAR(pose.joints[study_.drives[k].joint].position[0], law.position, kBalance);
+      EXPECT_NEAR(pose.joints[study_.drives[k].joint].rate[0], law.velocity, kBalance);
     }
   }
 }

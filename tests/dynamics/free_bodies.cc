@@ -54,13 +54,13 @@ MatrixXd Append(const MatrixXd& left, const MatrixXd& right) {
   return both;
 }
 
-Posed AnchorInWorld(const Mechanism& mechanism, const std::vector<LinkMotion>& links, AnchorId id) {
+Posed AnchorInWorld(const Mechanism& mechanism, std::span<const LinkMotion> links, AnchorId id) {
   return links[id.link].X_WL * mechanism.anchor(id).X_LA;
 }
 
 }  // namespace
 
-FreeJoint CutFree(const Mechanism& mechanism, const std::vector<LinkMotion>& links, int joint) {
+FreeJoint CutFree(const Mechanism& mechanism, std::span<const LinkMotion> links, int joint) {
   const Joint& j = mechanism.joints[joint];
   const Posed X_WF = AnchorInWorld(mechanism, links, j.first);
   const Posed X_WM = AnchorInWorld(mechanism, links, j.second);
@@ -70,8 +70,7 @@ FreeJoint CutFree(const Mechanism& mechanism, const std::vector<LinkMotion>& lin
   return free;
 }
 
-Vector6d RelativeTwist(const Mechanism& mechanism, const std::vector<LinkMotion>& links,
-                       int joint) {
+Vector6d RelativeTwist(const Mechanism& mechanism, std::span<const LinkMotion> links, int joint) {
   const Joint& j = mechanism.joints[joint];
   const FreeJoint free = CutFree(mechanism, links, joint);
   auto velocity = [&](const LinkMotion& link) -> Vector3d {

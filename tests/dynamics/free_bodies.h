@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "vmech/dynamics/load_study.h"
@@ -19,10 +20,10 @@ struct FreeJoint {
   Matrix6Xd freedoms;  ///< unit twists of M in F
   Matrix6Xd held;      ///< orthonormal wrenches that do no work on them
 };
-FreeJoint CutFree(const Mechanism& mechanism, const std::vector<LinkMotion>& links, int joint);
+FreeJoint CutFree(const Mechanism& mechanism, std::span<const LinkMotion> links, int joint);
 
 /// Twist of M in F, axes of F, from the motions of the two links.
-Vector6d RelativeTwist(const Mechanism& mechanism, const std::vector<LinkMotion>& links, int joint);
+Vector6d RelativeTwist(const Mechanism& mechanism, std::span<const LinkMotion> links, int joint);
 
 Vector3d CentreOfGravity(const Link& link, const LinkMotion& motion);
 /// What must act on a link about its centre of gravity, besides its weight, for it to move so.

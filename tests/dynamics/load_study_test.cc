@@ -3,9 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 
 #include "driven_examples.h"
+#include "vmech/dynamics/load_model.h"
+#include "vmech/kinematics/packet.h"
 
 namespace vmech {
 namespace {
@@ -26,6 +29,30 @@ LoadStudy LongStudy(const std::string& example) {
   return study;
 }
 
+/// Four poses at once are the four poses: every wrench, power and rate.
+TEST(PacketOfPoses, IsEachPoseOfItsOwn) {
+  constexpr double kRounding = 1e-12;  // of the largest load: the two round differently
+  for (const DrivenExample& example : DrivenExamples()) {
+    const LoadStudy study = StudyOf(example.name);
+    const PreparedStudy prepared = PrepareStudy(study);
+    if (!RunsInPackets(prepared.model)) continue;
+    const Motion motion = TrackMotion(study, prepared, 1e-13);
+    LoadWorkspace<double> ws(prepared.model);
+    LoadWorkspace<Packet> packet_ws(prepared.model);
+    ASSERT_TRUE(EvaluatePoseLoads(prepared.model, motion, 4, &packet_ws));
+    std::vector<PoseLoads> poses(Packet::kLanes, MakePoseLoads(prepared.model));
+    StorePoseLoads(prepared.model, motion, 4, packet_ws, poses.data());
+    for (int lane = 0; lane < Packet::kLanes; ++lane) {
+      PoseLoads alone = MakePoseLoads(prepared.model);
+      ASSERT_TRUE(EvaluatePoseLoads(prepared.model, motion, 4 + lane, &ws));
+      StorePoseLoads(prepared.model, motion, 4 + lane, ws, &alone);
+      EXPECT_LT(RelativeDifference(study.mechanism, alone, poses[lane]), kRounding) << example.name;
+      EXPECT_NEAR(alone.power, poses[lane].power, kRounding * (1 + std::abs(alone.power)));
+      EXPECT_EQ(alone.time, poses[lane].time);
+    }
+  }
+}
+
 class Threads : public testing::TestWithParam<const char*> {};
 
 TEST_P(Threads, GiveTheSameBitsHoweverManyTheyAre) {
@@ -40,7 +67,9 @@ TEST_P(Threads, GiveTheSameBitsHoweverManyTheyAre) {
       for (size_t j = 0; j < alone.poses[i].joints.size(); ++j) {
         ASSERT_TRUE(SameBits(alone.poses[i].joints[j], together.poses[i].joints[j])) << i;
       }
-      ASSERT_EQ(alone.poses[i].drive_forces, together.poses[i].drive_forces) << i;
+      for (size_t k = 0; k < alone.poses[i].drives.size(); ++k) {
+        ASSERT_EQ(alone.poses[i].drives[k].force, together.poses[i].drives[k].force) << i;
+      }
     }
     EXPECT_EQ(alone.max_power_error, together.max_power_error);
   }
@@ -138,7 +167,7 @@ TEST(IdleFreedoms, DoNotChangeTheLoadsWhereverTheyStand) {
   const LoadStudyResult turned = RunLoadStudy(study);
   // The rod is symmetric about its x axis. Forces alone: ball_b's axes turn with the rod.
   for (size_t i = 0; i < expected.poses.size(); ++i) {
-    EXPECT_NEAR(expected.poses[i].drive_forces[0], turned.poses[i].drive_forces[0], 1e-9);
+    EXPECT_NEAR(expected.poses[i].drives[0].force, turned.poses[i].drives[0].force, 1e-9);
     for (size_t j = 0; j < expected.poses[i].joints.size(); ++j) {
       EXPECT_NEAR(expected.poses[i].joints[j].force.norm(), turned.poses[i].joints[j].force.norm(),
                   1e-9 * (1 + expected.poses[i].joints[j].force.norm()));
@@ -162,8 +191,8 @@ class LoadTable : public testing::Test {
   double Against(size_t pose) const {
     LoadStudy bare = study_;
     bare.external.clear();
-    return RunLoadStudy(bare).poses[pose].drive_forces[0] -
-           RunLoadStudy(study_).poses[pose].drive_forces[0];
+    return RunLoadStudy(bare).poses[pose].drives[0].force -
+           RunLoadStudy(study_).poses[pose].drives[0].force;
   }
 
   LoadStudy study_;

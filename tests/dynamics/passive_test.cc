@@ -29,7 +29,7 @@ TEST(DryFriction, IsOvercomeByTheMotorWhicheverWayItTurns) {
   Mechanism crank = Example("crank");
   crank.joints[0].passive[0].coulomb = kMoment;
   auto moment = [&](double velocity) {
-    return RunLoadStudy(AtStart(crank, "main", velocity, 5)).poses[0].drive_forces[0];
+    return RunLoadStudy(AtStart(crank, "main", velocity, 5)).poses[0].drives[0].force;
   };
   EXPECT_NEAR(moment(3), kWithout + kMoment, kRounding);
   EXPECT_NEAR(moment(-3), kWithout - kMoment, kRounding);
@@ -51,7 +51,7 @@ Mechanism Sledge(double coefficient) {
 
 TEST(LoadFriction, OfASledgeIsInProportionToItsWeight) {
   const PoseLoads pose = RunLoadStudy(AtStart(Sledge(0.25), "track", 1, 3)).poses[0];
-  EXPECT_NEAR(pose.drive_forces[0], 2 * 3 + 0.25 * 2 * 9.81, kRounding);
+  EXPECT_NEAR(pose.drives[0].force, 2 * 3 + 0.25 * 2 * 9.81, kRounding);
   EXPECT_NEAR(pose.joints[0].force.z(), 2 * 3, kRounding);  // drive less friction moves the mass
 }
 
@@ -91,7 +91,7 @@ TEST_F(WeightlessSliderCrank, DrivesItsLoadAgainstFrictionThatTheLoadCauses) {
   constexpr double kMu = 0.3;
   const PoseLoads pose = With(kMu, -2);
   const double P = kPush / (std::cos(phi_) - kMu * std::sin(phi_));
-  EXPECT_NEAR(pose.drive_forces[0], -MomentOf(P), kRounding * kPush);
+  EXPECT_NEAR(pose.drives[0].force, -MomentOf(P), kRounding * kPush);
   const Wrenchd& guide = pose.joints[FindJoint(mechanism_, "guide")];
   EXPECT_NEAR(std::abs(guide.force.x()), P * std::sin(phi_), kRounding * kPush);
   EXPECT_NEAR(guide.force.z(), -kMu * P * std::sin(phi_), kRounding * kPush);
@@ -105,7 +105,7 @@ TEST_F(WeightlessSliderCrank, IsHelpedByFrictionAsItGivesWay) {
   for (const double mu : {0.3, 1.5 / std::tan(phi_)}) {
     const PoseLoads pose = With(mu, 2);
     const double P = kPush / (std::cos(phi_) + mu * std::sin(phi_));
-    EXPECT_NEAR(pose.drive_forces[0], -MomentOf(P), kRounding * kPush);
+    EXPECT_NEAR(pose.drives[0].force, -MomentOf(P), kRounding * kPush);
     EXPECT_FALSE(pose.jammed);
   }
 }
@@ -148,8 +148,8 @@ TEST(Passive, TakesItsPowerFromTheDrive) {
   study.mechanism.joints[pivot].passive[0] = passive;
   const LoadStudyResult with = RunLoadStudy(study);
   for (size_t i = 0; i < with.poses.size(); ++i) {
-    const double q = with.poses[i].joint_positions[pivot][0];
-    const double rate = with.poses[i].joint_rates[pivot][0];
+    const double q = with.poses[i].joints[pivot].position[0];
+    const double rate = with.poses[i].joints[pivot].rate[0];
     const double force = 30 * (q - 0.2) + 2 * rate + std::copysign(1.5, rate);
     const double power = with.poses[i].power - without.poses[i].power;
     EXPECT_NEAR(power, force * rate, 1e-9 * (1 + std::abs(with.poses[i].power)));

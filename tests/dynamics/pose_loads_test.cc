@@ -17,15 +17,13 @@ class EveryPose : public testing::TestWithParam<DrivenExample> {};
 TEST_P(EveryPose, IsEvaluatedWithoutAllocation) {
   const LoadStudy study = StudyOf(GetParam().name);
   const PreparedStudy prepared = PrepareStudy(study);
-  const std::vector<PoseInput> inputs = TrackMotion(study, prepared, 1e-13);
-  LoadWorkspace ws(prepared.model);
-  PoseLoads pose;
-  SizePoseLoads(prepared.model, &pose);
-  ASSERT_TRUE(EvaluatePoseLoads(prepared.model, inputs[0], &ws, &pose));
+  const Motion motion = TrackMotion(study, prepared, 1e-13);
+  LoadWorkspace<double> ws(prepared.model);
+  PoseLoads pose = MakePoseLoads(prepared.model);
   const long before = allocations;
-  for (const PoseInput& input : inputs) {
-    ASSERT_TRUE(EvaluatePoseLoads(prepared.model, input, &ws, &pose));
-    EvaluateLinkMotions(prepared.model, ws, &pose);
+  for (size_t i = 0; i < motion.size(); ++i) {
+    ASSERT_TRUE(EvaluatePoseLoads(prepared.model, motion, i, &ws));
+    StorePoseLoads(prepared.model, motion, i, ws, &pose);
   }
   EXPECT_EQ(allocations - before, 0);
 }

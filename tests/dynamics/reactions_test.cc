@@ -94,22 +94,23 @@ PoseLoads LoadsOfStructure(const LoadStudy& study) {
   model.compliances = CompliancesForRule(model.tree, study.rule, model.tree.length);
   model.external = study.external;
   model.rule = study.rule;
-  PoseInput input;
-  input.q = StartCoordinates(model.tree);
-  EXPECT_TRUE(Assemble(model.tree, {}, &input.q).closed);
-  input.cut_positions.assign(model.tree.loops.size(), Vector3d::Zero());
-  LoadWorkspace ws(model);
-  PoseLoads pose;
-  SizePoseLoads(model, &pose);
-  EXPECT_TRUE(EvaluatePoseLoads(model, input, &ws, &pose));
-  EvaluateLinkMotions(model, ws, &pose);
+  Motion motion;
+  motion.times = {0};
+  VectorXd q = StartCoordinates(model.tree);
+  EXPECT_TRUE(Assemble(model.tree, {}, &q).closed);
+  motion.coordinates.assign(q.begin(), q.end());
+  motion.cut_positions.assign(model.tree.loops.size(), Vector3d::Zero());
+  LoadWorkspace<double> ws(model);
+  PoseLoads pose = MakePoseLoads(model);
+  EXPECT_TRUE(EvaluatePoseLoads(model, motion, 0, &ws));
+  StorePoseLoads(model, motion, 0, ws, &pose);
   return pose;
 }
 
 double DifferenceFrom(const std::vector<Wrenchd>& expected, const Mechanism& mechanism,
                       const PoseLoads& pose) {
   PoseLoads other = pose;
-  other.joints = expected;
+  for (size_t j = 0; j < expected.size(); ++j) static_cast<Wrenchd&>(other.joints[j]) = expected[j];
   return RelativeDifference(mechanism, pose, other);
 }
 

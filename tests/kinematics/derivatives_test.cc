@@ -92,7 +92,6 @@ TEST_P(EveryExample, LoopBiasIsTheDerivativeOfTheLoopVelocity) {
   if (tree_.loops.empty()) return;
   // Along a motion that keeps the loops closed, C v = 0 at all times: bias = -C v'.
   EvaluatePose(tree_, q, &ws_);
-  DependentSolver solver(tree_, MakePartition(tree_, {}, {}));
   const MatrixXd C = DenseLoopJacobian(tree_, ws_);
   // A free motion: what random velocities leave after their loop-opening part is taken off.
   const VectorXd w = random_.Vector(tree_.nv);

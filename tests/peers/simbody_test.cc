@@ -155,15 +155,15 @@ TEST_P(SimbodyAgreement, MotionAndDriveForces) {
       fastest = std::max({fastest, link.v.norm(), link.w.norm()});
       greatest = std::max({greatest, link.a.norm(), link.alpha.norm()});
     }
-    for (double force : pose.drive_forces) largest = std::max(largest, std::abs(force));
+    for (const DriveSample& drive : pose.drives) largest = std::max(largest, std::abs(drive.force));
     EXPECT_LT(answer.velocity_error, kAgreement * fastest);
     for (size_t i = 0; i < pose.links.size(); ++i) {
       const peers::LinkAcceleration& a = answer.accelerations[i];
       EXPECT_LT((pose.links[i].a - a.a_WLo).norm(), kAgreement * greatest);
       EXPECT_LT((pose.links[i].alpha - a.alpha_WL).norm(), kAgreement * greatest);
     }
-    for (size_t i = 0; i < pose.drive_forces.size(); ++i) {
-      EXPECT_NEAR(pose.drive_forces[i], answer.drive_forces[i], kAgreement * largest);
+    for (size_t i = 0; i < pose.drives.size(); ++i) {
+      EXPECT_NEAR(pose.drives[i].force, answer.drive_forces[i], kAgreement * largest);
     }
   }
 }

@@ -110,8 +110,8 @@ class AndrewsSqueezer : public testing::TestWithParam<Row> {
 TEST_P(AndrewsSqueezer, SevenAnglesMoveTogetherAsInTheTable) {
   for (int i = 0; i < 7; ++i) {
     const int joint = FindJoint(squeezer_, kJoints[i]);
-    EXPECT_NEAR(loads_.joint_positions[joint][0], row_.q[i], kPositionTolerance) << kJoints[i];
-    EXPECT_NEAR(loads_.joint_rates[joint][0], row_.v[i],
+    EXPECT_NEAR(loads_.joints[joint].position[0], row_.q[i], kPositionTolerance) << kJoints[i];
+    EXPECT_NEAR(loads_.joints[joint].rate[0], row_.v[i],
                 kVelocityTolerance * (1 + Largest(row_.v, 7)))
         << kJoints[i];
   }
@@ -129,7 +129,7 @@ TEST_P(AndrewsSqueezer, PinForcesAreTheMultipliers) {
 
 TEST_P(AndrewsSqueezer, TheDriveExertsTheTorqueOfTheMotor) {
   // Moments of the crank's pin make the scale: its force times its radius of 7 mm.
-  EXPECT_NEAR(loads_.drive_forces[0], kMotorTorque,
+  EXPECT_NEAR(loads_.drives[0].force, kMotorTorque,
               kForceTolerance * (kMotorTorque + 0.007 * Largest(row_.pin, 6)));
 }
 

@@ -78,7 +78,7 @@ TEST_P(FlyballGovernor, NeedsNoDriveAlongThem) {
                                             {"slide", {y_[1], y_[4], a[4]}},
                                             {"right_hinge", {y_[2], y_[5], a[5]}},
                                             {"left_hinge", {-y_[2], -y_[5], -a[5]}}});
-  for (const double force : loads.drive_forces) EXPECT_NEAR(force, 0, kAtRest * kWeight);
+  for (const DriveSample& drive : loads.drives) EXPECT_NEAR(drive.force, 0, kAtRest * kWeight);
 }
 
 INSTANTIATE_TEST_SUITE_P(AlongTheMotion, FlyballGovernor, testing::ValuesIn(kRows));

@@ -205,7 +205,7 @@ TEST_P(FourBar, PinForcesAreThoseOfTheFreeBodies) {
 }
 
 TEST_P(FourBar, CrankTorqueIsThatOfTheFreeBodies) {
-  EXPECT_NEAR(loads_.drive_forces[0], row_.crank_torque,
+  EXPECT_NEAR(loads_.drives[0].force, row_.crank_torque,
               kTolerance * (1 + std::abs(row_.crank_torque)));
 }
 

@@ -172,7 +172,7 @@ TEST_P(ModelicaFourBar, ReactionsAreThoseOfTheFreeMotion) {
 }
 
 TEST_P(ModelicaFourBar, TheDamperAloneActsAboutTheFirstJoint) {
-  EXPECT_NEAR(loads_.drive_forces[0], 0, kTolerance * scale_);
+  EXPECT_NEAR(loads_.drives[0].force, 0, kTolerance * scale_);
   EXPECT_NEAR(OnSecond_W(four_bar_, loads_, "revolute1").moment.z(), -0.1 * row_.rate,
               kTolerance * scale_);
 }
@@ -221,7 +221,7 @@ TEST_P(ModelicaEngine, NothingPushesAlongTheCrankshaftAndTheDriveIsIdle) {
   for (const char* joint : {"main", "cylinder", "wrist", "ball", "pin"}) {
     EXPECT_NEAR(OnSecond_W(engine_, loads_, joint).force.x(), 0, kTolerance * scale_) << joint;
   }
-  EXPECT_NEAR(loads_.drive_forces[0], 0, kTolerance * scale_);
+  EXPECT_NEAR(loads_.drives[0].force, 0, kTolerance * scale_);
 }
 
 INSTANTIATE_TEST_SUITE_P(AlongTheMotion, ModelicaEngine, testing::ValuesIn(kEngineRows));

@@ -97,7 +97,7 @@ class NWindowFourBar : public testing::TestWithParam<Row> {
 };
 
 TEST_P(NWindowFourBar, FallsFreelyByTheEquationOfOneFreedom) {
-  EXPECT_NEAR(loads_.drive_forces[0], 0, kTolerance * Weight());
+  EXPECT_NEAR(loads_.drives[0].force, 0, kTolerance * Weight());
 }
 
 TEST_P(NWindowFourBar, CornerMovesAsPublished) {
@@ -123,8 +123,8 @@ INSTANTIATE_TEST_SUITE_P(AlongTheMotion, NWindowFourBar, testing::ValuesIn(kRows
 TEST(NWindowFourBar, ShippedExampleIsTheSameMechanism) {
   const MotionSample state = {-0.3, -1.5, 2};
   const Mechanism shipped = LedTo(Example("n-window-four-bar"), "a0", -0.3);
-  const double force = LoadsAt(shipped, {{"a0", state}}).drive_forces[0];
-  EXPECT_NEAR(force, LoadsAt(Windows(2, -0.3), {{"a0", state}}).drive_forces[0], 1e-10);
+  const double force = LoadsAt(shipped, {{"a0", state}}).drives[0].force;
+  EXPECT_NEAR(force, LoadsAt(Windows(2, -0.3), {{"a0", state}}).drives[0].force, 1e-10);
 }
 
 }  // namespace

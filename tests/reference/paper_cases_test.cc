@@ -33,7 +33,7 @@ HeldLoads Held(const Mechanism& mechanism, const std::string& grasp,
 TEST(PaperEquations9And10, CrankHeldAtItsEnd) {
   const Mechanism crank = Example("crank");
   const std::vector<Driven> turn = {{"main", {Degrees(40), 3, 5}}};
-  EXPECT_NEAR(LoadsAt(crank, turn).drive_forces[0], 1.0217875184396612, kTolerance);
+  EXPECT_NEAR(LoadsAt(crank, turn).drives[0].force, 1.0217875184396612, kTolerance);
   ExpectPlanar(Held(crank, "tip", turn).hand, {-2.1893078552845684, 2.6091155018301095, 0}, "tip");
   ExpectPlanar(Held(crank, "handle", turn).hand,
                {-0.18076853850973498, 0.2154315551969815, 0.9374197416877625}, "handle");
@@ -44,8 +44,8 @@ TEST(PaperEquations9And10, TwoLinkArmHeldAtItsTip) {
   const std::vector<Driven> swing = {{"shoulder", {Degrees(30), 1.5, 3}},
                                      {"elbow", {Degrees(50), -2, 4}}};
   const PoseLoads driven = LoadsAt(arm, swing);
-  EXPECT_NEAR(driven.drive_forces[0], 14.509677848245957, kTolerance * 14);
-  EXPECT_NEAR(driven.drive_forces[1], 1.6188410107853741, kTolerance * 14);
+  EXPECT_NEAR(driven.drives[0].force, 14.509677848245957, kTolerance * 14);
+  EXPECT_NEAR(driven.drives[1].force, 1.6188410107853741, kTolerance * 14);
   ExpectPlanar(Held(arm, "tip", swing).hand, {1.2689173056660785, 30.502722220755334, 0}, "tip");
   ExpectPlanar(Held(arm, "handle", swing).hand,
                {-11.675464799920844, 23.029279727601317, -4.579991274279884}, "handle");

@@ -49,7 +49,7 @@ TEST_P(SimplePendulum, PinForceIsThatOfTheFreeSwing) {
   const Vector3d force = OnSecond_W(pendulum, loads, "pin").force;
   EXPECT_NEAR(force.norm(), row.pin_force, kTolerance * 3 * kGravity);
   EXPECT_NEAR(force.dot(Vector3d(-row.x, -row.y, 0)), row.pin_force, kTolerance * 3 * kGravity);
-  EXPECT_NEAR(loads.drive_forces[0], 0, kTolerance * 3 * kGravity);
+  EXPECT_NEAR(loads.drives[0].force, 0, kTolerance * 3 * kGravity);
 }
 
 INSTANTIATE_TEST_SUITE_P(AlongTheSwing, SimplePendulum, testing::ValuesIn(kRows));

@@ -46,7 +46,7 @@ Mechanism LedTo(Mechanism mechanism, const std::string& joint, double position) 
   const PoseLoads last = AfterLeading(mechanism, joint, position);
   for (size_t j = 0; j < mechanism.joints.size(); ++j) {
     std::vector<double>& coordinates = mechanism.joints[j].start;
-    for (size_t k = 0; k < coordinates.size(); ++k) coordinates[k] = last.joint_positions[j][k];
+    for (size_t k = 0; k < coordinates.size(); ++k) coordinates[k] = last.joints[j].position[k];
   }
   return mechanism;
 }
@@ -74,24 +74,25 @@ HeldLoads LoadsInHand(const Mechanism& mechanism, const std::string& grasp,
                       ReactionRule rule) {
   const LoadStudy driven = StudyAt(mechanism, drives);
   const int index = FindGrasp(mechanism, grasp);
-  PoseInput input;
-  input.hand = GraspMotion(mechanism.grasps[index], RunLoadStudy(driven).poses.front());
+  Motion motion;
+  motion.times = {0};
+  motion.hand = {GraspMotion(mechanism.grasps[index], RunLoadStudy(driven).poses.front())};
 
   LoadStudy held = driven;
   held.drives.clear();
-  held.hand = HandDrive{index, HandLaw::Table({0}, {input.hand.X_WH}), stiffness};
+  held.hand = HandDrive{index, HandLaw::Table({0}, {motion.hand[0].X_WH}), stiffness};
   held.rule = rule;
   const PreparedStudy prepared = PrepareStudy(held);
-  input.q = prepared.q_start;
-  input.cut_positions.assign(prepared.model.tree.loops.size(), Vector3d::Zero());
+  motion.coordinates.assign(prepared.q_start.begin(), prepared.q_start.end());
+  motion.cut_positions.assign(prepared.model.tree.loops.size(), Vector3d::Zero());
 
   HeldLoads result;
-  LoadWorkspace workspace(prepared.model);
-  SizePoseLoads(prepared.model, &result.loads);
-  if (!EvaluatePoseLoads(prepared.model, input, &workspace, &result.loads)) {
+  LoadWorkspace<double> workspace(prepared.model);
+  if (!EvaluatePoseLoads(prepared.model, motion, 0, &workspace)) {
     throw std::runtime_error("the hand does not determine the motion");
   }
-  EvaluateLinkMotions(prepared.model, workspace, &result.loads);
+  result.loads = MakePoseLoads(prepared.model);
+  StorePoseLoads(prepared.model, motion, 0, workspace, &result.loads);
   result.hand = result.loads.hand;
   return result;
 }
@@ -113,7 +114,7 @@ Wrenchd OnSecond_W(const Mechanism& mechanism, const PoseLoads& loads, const std
 }
 
 double Position(const Mechanism& mechanism, const PoseLoads& loads, const std::string& joint) {
-  return loads.joint_positions[JointIndex(mechanism, joint)][0];
+  return loads.joints[JointIndex(mechanism, joint)].position[0];
 }
 
 double FreeAcceleration(const LoadStudy& study_of_one_pose, const std::string& joint,
@@ -125,7 +126,7 @@ double FreeAcceleration(const LoadStudy& study_of_one_pose, const std::string& j
   for (const int acceleration : {0, 1}) {
     const MotionLaw law = MotionLaw::Uniform(position, velocity, acceleration);
     study.drives = {{index, 0, law}};
-    force[acceleration] = RunLoadStudy(study).poses.front().drive_forces[0];
+    force[acceleration] = RunLoadStudy(study).poses.front().drives[0].force;
   }
   return force[0] / (force[0] - force[1]);
 }

@@ -39,7 +39,7 @@ TEST_F(MarghituSliderCrank, OtherForcesFollowFromTheBalanceOfEachLink) {
   ExpectForce("main", -102.82842712474618, 116.41421356237308);
   ExpectForce("wrist", -101.41421356237309, 97.12132034355963);
   ExpectForce("guide", 0, -87.12132034355963);
-  EXPECT_NEAR(loads_.drive_forces[0], 151.49242404917499, kExact * 151);
+  EXPECT_NEAR(loads_.drives[0].force, 151.49242404917499, kExact * 151);
 }
 
 /// idaSlCrank of the SUNDIALS examples (LLNL/sundials, BSD-3): its printed solution, and the same

@@ -134,7 +134,7 @@ TEST(Rccc, SlidesAsNewtonsMethodOnTheClosureSays) {
   for (const Row& row : kRows) {
     const PoseLoads loads = Led(rccc, Degrees(row.input));
     for (int i = 0; i < 3; ++i) {
-      const Vector3d& position = loads.joint_positions[FindJoint(rccc, kJoints[i])];
+      const Vector3d& position = loads.joints[FindJoint(rccc, kJoints[i])].position;
       EXPECT_NEAR(position[0], row.slide[i], kTolerance) << kJoints[i];
       ExpectAngle(position[1], row.angle[i], kJoints[i]);
     }

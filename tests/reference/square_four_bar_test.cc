@@ -33,7 +33,7 @@ TEST_F(SquareFourBar, UniqueReactionsAreThoseOfTheSingularValues) {
     EXPECT_NEAR(force.x(), row.force[0], kTolerance) << row.joint;
     EXPECT_NEAR(force.y(), row.force[1], kTolerance) << row.joint;
   }
-  EXPECT_NEAR(result_.poses.front().drive_forces[0], 0, kTolerance);
+  EXPECT_NEAR(result_.poses.front().drives[0].force, 0, kTolerance);
 }
 
 TEST_F(SquareFourBar, ForceInThePlaneAndMomentAboutThePinAreCertainOnly) {

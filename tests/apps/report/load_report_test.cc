@@ -42,16 +42,13 @@ struct Example {
   void AddPose(double angle) {
     PoseLoads pose;
     pose.time = angle / kSpeed;
-    pose.drives = {{angle, kSpeed, 0}};
+    pose.drives = {{{angle, kSpeed, 0}, 12.5 * std::cos(angle)}};
     const double radial = 1000 + 500 * std::max(0.0, std::sin(angle));
     Wrenchd wrench;
     wrench.force = {radial * std::cos(angle), radial * std::sin(angle), 50};
     wrench.moment = {0, 3, 0};
-    pose.joints = {wrench};
-    pose.joint_positions = {{angle, 0, 0}};
-    pose.joint_rates = {{kSpeed, 0, 0}};
-    pose.drive_forces = {12.5 * std::cos(angle)};
-    pose.power = pose.drive_forces[0] * kSpeed;
+    pose.joints = {{wrench, {angle, 0, 0}, {kSpeed, 0, 0}}};
+    pose.power = pose.drives[0].force * kSpeed;
     pose.power_error = 1e-14;
     study.times.push_back(pose.time);
     result.poses.push_back(pose);

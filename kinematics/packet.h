@@ -1,0 +1,150 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+
+namespace vmech {
+
+/// Four numbers that are computed with at once. As the scalar T of the kernels it takes four poses
+/// through the same lines in the time of about one. Lane k of every result depends on lane k of the
+/// operands alone. What decides by value does so lane by lane, with Select.
+///
+/// How a packet is passed depends on the instruction set: code that includes this header must be
+/// compiled for the same one as the library (VMECH_ARCH).
+class Packet {
+  using Lanes = double __attribute__((vector_size(32)));
+
+ public:
+  static constexpr int kLanes = 4;
+  /// Per lane all ones or zero: what a comparison gives.
+  using Mask = long __attribute__((vector_size(32)));
+
+  Packet() = default;
+  Packet(double value) : lanes_{value, value, value, value} {}  // NOLINT: numbers mix with packets
+  /// `number(lane)` in each lane.
+  template <typename Number>
+  static Packet Of(const Number& number) {
+    return Packet(Lanes{number(0), number(1), number(2), number(3)});
+  }
+
+  double operator[](int lane) const { return lanes_[lane]; }
+
+  Packet operator-() const { return Packet(-lanes_); }
+  Packet& operator+=(const Packet& b) { return *this = *this + b; }
+  Packet& operator-=(const Packet& b) { return *this = *this - b; }
+  Packet& operator*=(const Packet& b) { return *this = *this * b; }
+  Packet& operator/=(const Packet& b) { return *this = *this / b; }
+  friend Packet operator+(const Packet& a, const Packet& b) { return Packet(a.lanes_ + b.lanes_); }
+  friend Packet operator-(const Packet& a, const Packet& b) { return Packet(a.lanes_ - b.lanes_); }
+  friend Packet operator*(const Packet& a, const Packet& b) { return Packet(a.lanes_ * b.lanes_); }
+  friend Packet operator/(const Packet& a, const Packet& b) { return Packet(a.lanes_ / b.lanes_); }
+  friend Mask operator<(const Packet& a, const Packet& b) { return a.lanes_ < b.lanes_; }
+  friend Mask operator>(const Packet& a, const Packet& b) { return a.lanes_ > b.lanes_; }
+  friend Mask operator<=(const Packet& a, const Packet& b) { return a.lanes_ <= b.lanes_; }
+
+  /// a where the mask is set, b elsewhere.
+  friend Packet Select(const Mask& mask, const Packet& a, const Packet& b) {
+    return Packet(mask ? a.lanes_ : b.lanes_);
+  }
+  friend Packet abs(const Packet& a) {
+    constexpr long kAllButSign = 0x7fffffffffffffff;
+    return Packet(Lanes(Mask(a.lanes_) & kAllButSign));
+  }
+  friend Packet min(const Packet& a, const Packet& b) { return Select(b < a, b, a); }
+  friend Packet max(const Packet& a, const Packet& b) { return Select(a < b, b, a); }
+  friend Packet sqrt(const Packet& a) {
+    return Of([&](int lane) { return std::sqrt(a[lane]); });
+  }
+  friend Packet round(const Packet& a) {
+    return Of([&](int lane) { return std::round(a[lane]); });
+  }
+  /// The lanes moved up by one: (first, a[0], a[1], a[2]).
+  friend Packet ShiftIn(double first, const Packet& a) {
+    return Of([&](int lane) { return lane == 0 ? first : a[lane - 1]; });
+  }
+
+ private:
+  explicit Packet(const Lanes& lanes) : lanes_(lanes) {}
+
+  Lanes lanes_;
+};
+
+/// Within 1e-16 of sine and cosine up to 1e5 rad; beyond, those of the standard library.
+void SinCos(const Packet& angle, Packet* sine, Packet* cosine);
+/// The angle of (x, y), -pi to pi, within 5e-16; 0 for (0, 0).
+Packet atan2(const Packet& y, const Packet& x);
+
+// The same words for a single number.
+
+inline double Select(bool condition, double a, double b) {
+  return condition ? a : b;
+}
+inline void SinCos(double angle, double* sine, double* cosine) {
+  *sine = std::sin(angle);
+  *cosine = std::cos(angle);
+}
+
+inline bool AllLanes(bool condition) {
+  return condition;
+}
+inline bool AllLanes(const Packet::Mask& mask) {
+  return (mask[0] & mask[1] & mask[2] & mask[3]) != 0;
+}
+
+template <typename T>
+inline constexpr int kLanesOf = 1;
+template <>
+inline constexpr int kLanesOf<Packet> = Packet::kLanes;
+
+inline double Lane(double value, int /*lane*/) {
+  return value;
+}
+inline double Lane(const Packet& value, int lane) {
+  return value[lane];
+}
+/// One lane of a vector or matrix.
+template <typename T, int rows, int columns>
+Eigen::Matrix<double, rows, columns> Lane(const Eigen::Matrix<T, rows, columns>& value, int lane) {
+  Eigen::Matrix<double, rows, columns> one;
+  for (int i = 0; i < rows * columns; ++i) one(i) = Lane(value(i), lane);
+  return one;
+}
+
+/// T made of `number(lane)` for each of its lanes.
+template <typename T, typename Number>
+T FromLanes(const Number& number) {
+  if constexpr (kLanesOf<T> == 1) {
+    return number(0);
+  } else {
+    return Packet::Of(number);
+  }
+}
+
+}  // namespace vmech
+
+template <>
+struct Eigen::NumTraits<vmech::Packet> : Eigen::GenericNumTraits<vmech::Packet> {
+  using Real = vmech::Packet;
+  using NonInteger = vmech::Packet;
+  using Nested = vmech::Packet;
+  using Literal = double;
+  enum {
+    IsInteger = 0,
+    IsSigned = 1,
+    IsComplex = 0,
+    RequireInitialization = 0,
+    ReadCost = 1,
+    AddCost = 1,
+    MulCost = 1,
+  };
+};
+
+// Numbers mix with packets in expressions.
+template <typename Operation>
+struct Eigen::ScalarBinaryOpTraits<double, vmech::Packet, Operation> {
+  using ReturnType = vmech::Packet;
+};
+template <typename Operation>
+struct Eigen::ScalarBinaryOpTraits<vmech::Packet, double, Operation> {
+  using ReturnType = vmech::Packet;
+};
