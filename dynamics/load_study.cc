@@ -37,11 +37,7 @@ class ParallelEvaluation {
  public:
   ParallelEvaluation(const LoadModel& model, const Motion& motion, const LoadStudyOptions& options,
                      LoadStudyResult* result)
-      : model_(model),
-        motion_(motion),
-        options_(options),
-        memory_(result->memory.get()),
-        poses_(result->poses) {}
+      : model_(model), motion_(motion), options_(options), poses_(result->poses) {}
 
   void Run() {
     const size_t chunks = (motion_.size() + kChunk - 1) / kChunk;
@@ -80,10 +76,7 @@ class ParallelEvaluation {
   template <typename T>
   bool Evaluate(size_t i, LoadWorkspace<T>* ws) {
     if (!EvaluatePoseLoads(model_, motion_, i, ws)) return false;
-    for (int lane = 0; lane < kLanesOf<T>; ++lane) {
-      poses_[i + lane] = MakePoseLoads(model_, options_.link_motions, memory_);
-    }
-    StorePoseLoads(model_, motion_, i, *ws, &poses_[i]);
+    StorePoseLoads(model_, motion_, i, *ws, options_.link_motions, &poses_[i]);
     return true;
   }
 
@@ -104,7 +97,6 @@ class ParallelEvaluation {
   const LoadModel& model_;
   const Motion& motion_;
   const LoadStudyOptions& options_;
-  PoseMemory* memory_;
   PoseArray<PoseLoads>& poses_;
   std::atomic<size_t> next_{0}, done_{0};
   std::atomic<size_t> dead_centre_{std::numeric_limits<size_t>::max()};
@@ -118,7 +110,10 @@ void SizePoses(const LoadModel& model, const LoadStudyOptions& options, size_t c
   const size_t each = PoseLoads::Size(model.drives.size(), mechanism.joints.size(), links);
   result->memory =
       std::make_shared<PoseMemory>(PoseMemory::Rounded(count * sizeof(PoseLoads)) + count * each);
-  result->poses = PoseArray<PoseLoads>(count, PoseAllocator<PoseLoads>(result->memory.get()));
+  PoseMemory* memory = result->memory.get();
+  result->poses = PoseArray<PoseLoads>(PoseAllocator<PoseLoads>(memory));
+  result->poses.reserve(count);
+  for (size_t i = 0; i < count; ++i) result->poses.emplace_back(memory);
 }
 
 /// Poses at which certainty is judged: evenly spread, a dozen or so.
@@ -178,10 +173,10 @@ void Summarise(const LoadModel& model, const Motion& motion, LoadStudyResult* re
 
 }  // namespace
 
-PoseLoads::PoseLoads(size_t drive_count, size_t joint_count, size_t link_count, PoseMemory* memory)
-    : drives(drive_count, PoseAllocator<DriveSample>(memory)),
-      joints(joint_count, PoseAllocator<JointSample>(memory)),
-      links(link_count, PoseAllocator<LinkMotion>(memory)) {}
+PoseLoads::PoseLoads(PoseMemory* memory)
+    : drives(PoseAllocator<DriveSample>(memory)),
+      joints(PoseAllocator<JointSample>(memory)),
+      links(PoseAllocator<LinkMotion>(memory)) {}
 
 size_t PoseLoads::Size(size_t drive_count, size_t joint_count, size_t link_count) {
   return PoseMemory::Rounded(drive_count * sizeof(DriveSample)) +

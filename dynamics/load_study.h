@@ -98,9 +98,9 @@ struct JointSample : Wrenchd {
 /// One pose of the study.
 struct PoseLoads {
   PoseLoads() = default;
-  /// Room for the results of one pose.
-  PoseLoads(size_t drive_count, size_t joint_count, size_t link_count, PoseMemory* memory);
-  /// What that takes of the memory, in bytes.
+  /// Keeps its arrays in `memory`.
+  explicit PoseLoads(PoseMemory* memory);
+  /// What they take of it, in bytes.
   static size_t Size(size_t drive_count, size_t joint_count, size_t link_count);
 
   double time = 0;

@@ -304,12 +304,6 @@ LoadWorkspace<T>::LoadWorkspace(const LoadModel& model)
   }
 }
 
-PoseLoads MakePoseLoads(const LoadModel& model, bool link_motions, PoseMemory* memory) {
-  const Mechanism& mechanism = model.tree.mechanism;
-  const size_t links = link_motions ? mechanism.links.size() : 0;
-  return {model.drives.size(), mechanism.joints.size(), links, memory};
-}
-
 bool RunsInPackets(const LoadModel& model) {
   return !model.hand && model.partition.idle.empty() && !model.has_load_friction &&
          model.rule != ReactionRule::kPaperJoint;
@@ -337,19 +331,24 @@ bool EvaluatePoseLoads(const LoadModel& model, const Motion& motion, size_t pose
 
 template <typename T>
 void StorePoseLoads(const LoadModel& model, const Motion& motion, size_t pose,
-                    const LoadWorkspace<T>& ws, PoseLoads* poses) {
+                    const LoadWorkspace<T>& ws, bool link_motions, PoseLoads* poses) {
   for (int lane = 0; lane < kLanesOf<T>; ++lane) {
     PoseLoads& out = poses[lane];
     out.time = motion.times[pose + lane];
+    out.drives.clear();
+    out.drives.reserve(model.drives.size());
     for (size_t k = 0; k < model.drives.size(); ++k) {
-      out.drives[k] = {DriveAt(model, motion, pose + lane, k), Lane(ws.drive_forces[k], lane)};
+      out.drives.push_back(
+          {DriveAt(model, motion, pose + lane, k), Lane(ws.drive_forces[k], lane)});
     }
-    for (size_t j = 0; j < ws.loads.size(); ++j) {
-      const JointLoad<T>& load = ws.loads[j];
-      out.joints[j] = {{Lane(load.W_F.force, lane), Lane(load.W_F.moment, lane)},
-                       Lane(load.position, lane),
-                       Lane(load.rate, lane)};
+    out.joints.clear();
+    out.joints.reserve(ws.loads.size());
+    for (const JointLoad<T>& load : ws.loads) {
+      out.joints.push_back({{Lane(load.W_F.force, lane), Lane(load.W_F.moment, lane)},
+                            Lane(load.position, lane),
+                            Lane(load.rate, lane)});
     }
+    out.links.resize(link_motions ? model.tree.mechanism.links.size() : 0);
     out.power = Lane(ws.power, lane);
     out.power_error = Lane(ws.power_error, lane);
     out.smallest_pivot = Lane(ws.dependents.smallest_pivot(), lane);
@@ -372,7 +371,7 @@ void StorePoseLoads(const LoadModel& model, const Motion& motion, size_t pose,
   template struct LoadWorkspace<T>;                                                               \
   template bool EvaluatePoseLoads<T>(const LoadModel&, const Motion&, size_t, LoadWorkspace<T>*); \
   template void StorePoseLoads<T>(const LoadModel&, const Motion&, size_t,                        \
-                                  const LoadWorkspace<T>&, PoseLoads*);
+                                  const LoadWorkspace<T>&, bool, PoseLoads*);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Packet)
 #undef VMECH_INSTANTIATE

@@ -90,14 +90,10 @@ template <typename T>
 [[nodiscard]] bool EvaluatePoseLoads(const LoadModel& model, const Motion& motion, size_t pose,
                                      LoadWorkspace<T>* ws);
 
-/// Room for a model's results at one pose, on the heap or in `memory`.
-PoseLoads MakePoseLoads(const LoadModel& model, bool link_motions = true,
-                        PoseMemory* memory = nullptr);
-
-/// Copies what was computed last to poses[0], poses[1], ... of MakePoseLoads (as many as T has
-/// lanes), with the motion of every link if there is room for it.
+/// Copies what was computed last to poses[0], poses[1], ... (as many as T has lanes), with the
+/// motion of every link if wanted. They keep their memory.
 template <typename T>
 void StorePoseLoads(const LoadModel& model, const Motion& motion, size_t pose,
-                    const LoadWorkspace<T>& ws, PoseLoads* poses);
+                    const LoadWorkspace<T>& ws, bool link_motions, PoseLoads* poses);
 
 }  // namespace vmech

@@ -19,7 +19,7 @@ std::function<void()> SliderCrankPose() {
     PreparedStudy prepared = PrepareStudy(study);
     Motion motion = TrackMotion(study, prepared, 1e-13);
     LoadWorkspace<T> ws{prepared.model};
-    std::vector<PoseLoads> loads{kLanesOf<T>, MakePoseLoads(prepared.model, false)};
+    PoseLoads loads[kLanesOf<T>];
     size_t next = 0;
   };
   auto state = std::make_shared<State>();
@@ -27,7 +27,7 @@ std::function<void()> SliderCrankPose() {
     const LoadModel& model = state->prepared.model;
     const size_t pose = state->next;
     if (!EvaluatePoseLoads(model, state->motion, pose, &state->ws)) std::abort();
-    StorePoseLoads(model, state->motion, pose, state->ws, state->loads.data());
+    StorePoseLoads(model, state->motion, pose, state->ws, false, state->loads);
     state->next = (pose + kLanesOf<T>) % state->motion.size();
   };
 }

@@ -21,14 +21,14 @@ double MicrosecondsPerPose(int windows) {
   const LoadStudy study = WindowStudy(windows, kPoses);
   const PreparedStudy prepared = PrepareStudy(study);
   LoadWorkspace<Packet> ws(prepared.model);
-  std::vector<PoseLoads> loads(Packet::kLanes, MakePoseLoads(prepared.model));
+  std::vector<PoseLoads> loads(Packet::kLanes);
   std::vector<double> times;
   for (int i = 0; i < kRepetitions; ++i) {
     const auto start = std::chrono::steady_clock::now();
     const Motion motion = TrackMotion(study, prepared, 1e-13);
     for (size_t pose = 0; pose < motion.size(); pose += Packet::kLanes) {
       if (!EvaluatePoseLoads(prepared.model, motion, pose, &ws)) return 0;
-      StorePoseLoads(prepared.model, motion, pose, ws, loads.data());
+      StorePoseLoads(prepared.model, motion, pose, ws, false, loads.data());
     }
     const std::chrono::duration<double, std::micro> elapsed =
         std::chrono::steady_clock::now() - start;

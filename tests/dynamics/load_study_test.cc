@@ -40,12 +40,12 @@ TEST(PacketOfPoses, IsEachPoseOfItsOwn) {
     LoadWorkspace<double> ws(prepared.model);
     LoadWorkspace<Packet> packet_ws(prepared.model);
     ASSERT_TRUE(EvaluatePoseLoads(prepared.model, motion, 4, &packet_ws));
-    std::vector<PoseLoads> poses(Packet::kLanes, MakePoseLoads(prepared.model));
-    StorePoseLoads(prepared.model, motion, 4, packet_ws, poses.data());
+    std::vector<PoseLoads> poses(Packet::kLanes);
+    StorePoseLoads(prepared.model, motion, 4, packet_ws, true, poses.data());
     for (int lane = 0; lane < Packet::kLanes; ++lane) {
-      PoseLoads alone = MakePoseLoads(prepared.model);
+      PoseLoads alone;
       ASSERT_TRUE(EvaluatePoseLoads(prepared.model, motion, 4 + lane, &ws));
-      StorePoseLoads(prepared.model, motion, 4 + lane, ws, &alone);
+      StorePoseLoads(prepared.model, motion, 4 + lane, ws, true, &alone);
       EXPECT_LT(RelativeDifference(study.mechanism, alone, poses[lane]), kRounding) << example.name;
       EXPECT_NEAR(alone.power, poses[lane].power, kRounding * (1 + std::abs(alone.power)));
       EXPECT_EQ(alone.time, poses[lane].time);

@@ -19,11 +19,13 @@ TEST_P(EveryPose, IsEvaluatedWithoutAllocation) {
   const PreparedStudy prepared = PrepareStudy(study);
   const Motion motion = TrackMotion(study, prepared, 1e-13);
   LoadWorkspace<double> ws(prepared.model);
-  PoseLoads pose = MakePoseLoads(prepared.model);
+  PoseLoads pose;
+  ASSERT_TRUE(EvaluatePoseLoads(prepared.model, motion, 0, &ws));
+  StorePoseLoads(prepared.model, motion, 0, ws, true, &pose);
   const long before = allocations;
   for (size_t i = 0; i < motion.size(); ++i) {
     ASSERT_TRUE(EvaluatePoseLoads(prepared.model, motion, i, &ws));
-    StorePoseLoads(prepared.model, motion, i, ws, &pose);
+    StorePoseLoads(prepared.model, motion, i, ws, true, &pose);
   }
   EXPECT_EQ(allocations - before, 0);
 }

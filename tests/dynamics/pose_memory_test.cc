@@ -30,7 +30,9 @@ TEST(PoseLoads, CopyOutlivesTheResultItIsTakenFrom) {
   std::optional<PoseMemory> memory(PoseLoads::Size(1, 2, 3));
   PoseLoads copy;
   {
-    PoseLoads pose(1, 2, 3, &*memory);
+    PoseLoads pose(&*memory);
+    pose.joints.resize(2);
+    pose.links.resize(3);
     pose.joints[1].force = {1, 2, 3};
     copy = pose;
     const PoseLoads second = pose;

@@ -101,9 +101,9 @@ PoseLoads LoadsOfStructure(const LoadStudy& study) {
   motion.coordinates.assign(q.begin(), q.end());
   motion.cut_positions.assign(model.tree.loops.size(), Vector3d::Zero());
   LoadWorkspace<double> ws(model);
-  PoseLoads pose = MakePoseLoads(model);
+  PoseLoads pose;
   EXPECT_TRUE(EvaluatePoseLoads(model, motion, 0, &ws));
-  StorePoseLoads(model, motion, 0, ws, &pose);
+  StorePoseLoads(model, motion, 0, ws, true, &pose);
   return pose;
 }
 

@@ -91,8 +91,7 @@ HeldLoads LoadsInHand(const Mechanism& mechanism, const std::string& grasp,
   if (!EvaluatePoseLoads(prepared.model, motion, 0, &workspace)) {
     throw std::runtime_error("the hand does not determine the motion");
   }
-  result.loads = MakePoseLoads(prepared.model);
-  StorePoseLoads(prepared.model, motion, 0, workspace, &result.loads);
+  StorePoseLoads(prepared.model, motion, 0, workspace, true, &result.loads);
   result.hand = result.loads.hand;
   return result;
 }
