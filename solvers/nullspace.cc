@@ -187,9 +187,10 @@ class NullspaceSolver {
   }
 
   // nu above the multipliers, and such that d is a direction of descent; returns the slope of the
-  // merit along d.
+  // merit along d. The multipliers are those of this point, which redundant rows have no part in:
+  // those of the step grow without bound where such a row is nearly but not quite redundant.
   double RaiseWeight(double reduction) {
-    const double needed = 1.5 * step_mu_.norm();
+    const double needed = 1.5 * mu_.norm();
     nu_ = std::max({needed, 0.5 * (nu_ + needed), kLeastWeight});
     const double objective_slope = gradient_.dot(d_);
     if (reduction > 0 && objective_slope - nu_ * reduction > -0.5 * nu_ * reduction) {

@@ -46,6 +46,16 @@ TEST(SolveProblem, ReachesATargetOnItsOwnBranchFromNearby) {
   EXPECT_TRUE(Succeeded(result, TargetKind::kReachable));
 }
 
+TEST(SolveProblem, ReachesEveryTargetOfARedundantLoopFromNearby) {
+  TargetBlock block;
+  block.start_distance = 0.2;
+  OneBlock one("bricard", block);
+  for (uint64_t seed = 0; seed < 150; ++seed) {
+    const Result result = one.Solve(seed);
+    EXPECT_EQ(result.verdict, Verdict::kSolved) << "seed " << seed << ": " << result.message;
+  }
+}
+
 TEST(SolveProblem, CallsAConstrainedMinimumOffAnUnreachableTargetUnreachable) {
   OneBlock one("slider-crank", Block(TargetKind::kUnreachable));
   const Result result = one.Solve(2);
