@@ -97,6 +97,7 @@ VectorXd BiasForces(const KinematicTree& tree, const VectorXd& q, const VectorXd
   return h;
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): T is a type
 #define VMECH_INSTANTIATE(T)                                                                     \
   template void RecursiveNewtonEuler<T>(const KinematicTree&, const Vector3d&, const Wrench<T>*, \
                                         TreeWorkspace<T>*);                                      \
@@ -104,5 +105,6 @@ VectorXd BiasForces(const KinematicTree& tree, const VectorXd& q, const VectorXd
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Packet)
 #undef VMECH_INSTANTIATE
+// NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace vmech

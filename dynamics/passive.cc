@@ -69,11 +69,13 @@ T DryFriction(const Joint& joint, int freedom, const Wrench<T>& W_F) {
   return constant + friction.coefficient * lever * across;
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): T is a type
 #define VMECH_INSTANTIATE(T)                                                \
   template T PassiveForce<T>(const Passive&, const T&, const T&, const T&); \
   template T DryFriction<T>(const Joint&, int, const Wrench<T>&);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Packet)
 #undef VMECH_INSTANTIATE
+// NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace vmech

@@ -367,6 +367,7 @@ void StorePoseLoads(const LoadModel& model, const Motion& motion, size_t pose,
   }
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): T is a type
 #define VMECH_INSTANTIATE(T)                                                                      \
   template struct LoadWorkspace<T>;                                                               \
   template bool EvaluatePoseLoads<T>(const LoadModel&, const Motion&, size_t, LoadWorkspace<T>*); \
@@ -375,5 +376,6 @@ void StorePoseLoads(const LoadModel& model, const Motion& motion, size_t pose,
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Packet)
 #undef VMECH_INSTANTIATE
+// NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace vmech

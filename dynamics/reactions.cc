@@ -351,6 +351,7 @@ void ReactionSolver<T>::Solve(const TreeWorkspace<T>& ws, const std::vector<Join
   }
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): T is a type
 #define VMECH_INSTANTIATE(T)                                                                 \
   template void JointFrames<T>(const KinematicTree&, const TreeWorkspace<T>&,                \
                                std::vector<JointState<T>>*);                                 \
@@ -361,5 +362,6 @@ void ReactionSolver<T>::Solve(const TreeWorkspace<T>& ws, const std::vector<Join
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Packet)
 #undef VMECH_INSTANTIATE
+// NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace vmech

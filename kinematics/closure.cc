@@ -177,6 +177,7 @@ T CloseByNewton(const KinematicTree& tree, double tolerance, int max_steps,
   return error;
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): T is a type
 #define VMECH_INSTANTIATE(T)                                                              \
   template class DependentSolver<T>;                                                      \
   template void EvaluatePose<T>(const KinematicTree&, const T*, TreeWorkspace<T>*, bool); \
@@ -185,5 +186,6 @@ T CloseByNewton(const KinematicTree& tree, double tolerance, int max_steps,
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Packet)
 #undef VMECH_INSTANTIATE
+// NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace vmech

@@ -170,6 +170,7 @@ void MoveCoordinates(const KinematicTree& tree, const T* dv, T* q) {
   }
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): T is a type
 #define VMECH_INSTANTIATE(T)                                                             \
   template void ForwardKinematics<T>(const KinematicTree&, const T*, TreeWorkspace<T>*); \
   template void ForwardVelocities<T>(const KinematicTree&, const T*, TreeWorkspace<T>*); \
@@ -179,5 +180,6 @@ void MoveCoordinates(const KinematicTree& tree, const T* dv, T* q) {
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Packet)
 #undef VMECH_INSTANTIATE
+// NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace vmech

@@ -279,6 +279,7 @@ T LargestLoopError(const KinematicTree& tree, const TreeWorkspace<T>& ws) {
   return largest;
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): T is a type
 #define VMECH_INSTANTIATE(T)                                                                \
   template void LoopErrors<T>(const KinematicTree&, TreeWorkspace<T>*);                     \
   template void LoopJacobian<T>(const KinematicTree&, TreeWorkspace<T>*);                   \
@@ -290,5 +291,6 @@ T LargestLoopError(const KinematicTree& tree, const TreeWorkspace<T>& ws) {
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Packet)
 #undef VMECH_INSTANTIATE
+// NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace vmech

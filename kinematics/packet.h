@@ -139,6 +139,16 @@ struct Eigen::NumTraits<vmech::Packet> : Eigen::GenericNumTraits<vmech::Packet> 
   };
 };
 
+// A packet brings its alignment with it; Eigen would ask for the less that numbers need.
+template <int size>
+struct Eigen::internal::compute_default_alignment<vmech::Packet, size> {
+  enum { value = 0 };
+};
+template <>
+struct Eigen::internal::compute_default_alignment<vmech::Packet, Eigen::Dynamic> {
+  enum { value = EIGEN_MAX_ALIGN_BYTES };
+};
+
 // Numbers mix with packets in expressions.
 template <typename Operation>
 struct Eigen::ScalarBinaryOpTraits<double, vmech::Packet, Operation> {
