@@ -18,7 +18,8 @@ import sys
 
 from sources import ROOT, relative
 
-MODULES = ("mechanisms", "solvers", "kinematics", "dynamics", "hw_interface", "apps")
+MODULES = ("mechanisms", "solvers", "kinematics", "dynamics", "comparison", "hw_interface",
+           "apps")
 INCLUDE = re.compile(r'^#include "vmech/([^"]+)"', re.MULTILINE)
 
 
