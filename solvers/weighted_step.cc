@@ -11,16 +11,25 @@ constexpr double kFirstDamping = 1e-6;  // after the first refusal
 constexpr double kDampingGrowth = 4;
 constexpr double kSufficient = 1e-4;  // part of the promised decrease that accepts a step
 constexpr int kMaxCorrections = 2;
+constexpr double kNegligibleStep = 1e-13;  // [unit of the tangent]
+// A step is taken, whatever becomes of phi, if the next one is expected to be shorter by this.
+constexpr double kContraction = 0.25;
 constexpr double kScaleFloor = 1e-9;  // of the damping of a column that nothing depends on
 // Changes of phi smaller than this (relative) are rounding and do not refuse a step.
 constexpr double kRounding = 1e-13;
+
+double MaxAbs(const VectorXd& v) noexcept {
+  double largest = 0;
+  for (double v_i : v) largest = std::max(largest, std::abs(v_i));
+  return largest;
+}
 
 }  // namespace
 
 WeightedStep::WeightedStep(const ConstrainedLeastSquares& problem)
     : at_x(problem.sizes()), equations_(problem.sizes().tangents), at_trial_(problem.sizes()) {
   const ProblemSizes& sizes = problem.sizes();
-  dx = scale_ = damping_ = VectorXd::Zero(sizes.tangents);
+  dx = next_dx_ = scale_ = damping_ = VectorXd::Zero(sizes.tangents);
   S_ = MatrixXd::Zero(sizes.tangents, sizes.tangents);
   c_model_ = forces_ = VectorXd::Zero(sizes.constraints);
   trial_x_ = VectorXd::Zero(sizes.coordinates);
@@ -108,11 +117,15 @@ WeightedStep::Descent WeightedStep::Minimize(ConstrainedLeastSquares& problem, d
   double growth = kDampingGrowth;
   while (!(descent.stationary = GradientError() <= tolerance)) {
     if (descent.iterations == max_iterations) break;
-    ++descent.iterations;
     double gain = -1;
     if (Compute(problem, *x, damping, max_step)) {
+      if (damping == least_damping && MaxAbs(dx) <= kNegligibleStep) {
+        descent.stationary = true;  // what is left of the gradient is rounding, times lambda^2
+        break;
+      }
       gain = TryStep(problem, lambda, mu, max_step, x);
     }
+    ++descent.iterations;
     // Damping follows the gain of the step (Nielsen 1999).
     if (gain >= 0) {
       const double surplus = 2 * gain - 1;
@@ -169,9 +182,30 @@ double WeightedStep::TryStep(ConstrainedLeastSquares& problem, double lambda, co
       static_cast<void>(MoveToTrial(problem, lambda, mu, x));  // back
       return -1;
     }
+    if (correction == 0 && ContractsAtTrial(lambda, mu) && MoveToTrial(problem, lambda, mu, x)) {
+      return 1;
+    }
     if (correction == kMaxCorrections || !at_trial_.c.allFinite()) return -1;
     CorrectForCurvature(problem, *x, lambda, max_step);
   }
+}
+
+// The natural monotonicity test: -H^-1 g with H of here and g of the trial point is about the step
+// that will follow. Where lambda is large, steps of Gauss-Newton raise phi by their curvature times
+// lambda^2 while they converge quadratically. [Deuflhard, Newton Methods for Nonlinear
+// Problems, 3.3]
+bool WeightedStep::ContractsAtTrial(double lambda, const VectorXd& mu) noexcept {
+  const double weight = lambda * lambda;
+  const VectorXd &r = at_trial_.r, &c = at_trial_.c;
+  const double *J_j = at_x.J.data(), *C_j = at_x.C.data();
+  for (int j = 0; j < equations_.size(); ++j, J_j += r.size(), C_j += c.size()) {
+    double g_j = 0;
+    for (int i = 0; i < r.size(); ++i) g_j += J_j[i] * r[i];
+    for (int i = 0; i < c.size(); ++i) g_j += C_j[i] * (mu[i] + weight * c[i]);
+    next_dx_[j] = -g_j;
+  }
+  equations_.Solve(&next_dx_);
+  return MaxAbs(next_dx_) < kContraction * MaxAbs(dx);
 }
 
 // Exchanges *x and the trial point, and what is known of them.

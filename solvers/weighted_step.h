@@ -59,6 +59,7 @@ class WeightedStep {
   double GradientError() const noexcept;
   double TryStep(ConstrainedLeastSquares& problem, double lambda, const VectorXd& mu,
                  double max_step, VectorXd* x) noexcept;
+  bool ContractsAtTrial(double lambda, const VectorXd& mu) noexcept;
   bool MoveToTrial(ConstrainedLeastSquares& problem, double lambda, const VectorXd& mu,
                    VectorXd* x) noexcept;
   bool WithinNoise() const noexcept { return promised_ <= noise_; }
@@ -72,7 +73,7 @@ class WeightedStep {
   Linearization at_trial_;
   VectorXd trial_x_;
   VectorXd scale_;  // largest diagonal of H so far: a column that fades keeps its damping (MINPACK)
-  VectorXd damping_, c_model_;
+  VectorXd damping_, c_model_, next_dx_;
   VectorXd forces_;  // mu + lambda^2 c, what the constraints pull with
   MatrixXd S_;
   double promised_ = 0, noise_ = 0;  // decrease of phi: by the model, and lost in rounding
