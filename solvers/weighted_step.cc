@@ -97,12 +97,14 @@ const VectorXd& WeightedStep::PredictConstraints() noexcept {
 
 void WeightedStep::Clip(const ConstrainedLeastSquares& problem, const VectorXd& x,
                         double max_step) noexcept {
-  const double largest = dx.cwiseAbs().maxCoeff();
-  if (largest > max_step) dx *= max_step / largest;
+  const double largest = MaxAbs(dx);
+  clipped_ = largest > max_step;
+  if (clipped_) dx *= max_step / largest;
   for (const Bound& bound : problem.bounds()) {
-    const double value = x[bound.coordinate];
-    dx[bound.tangent] = std::clamp(dx[bound.tangent], std::min(bound.lower - value, 0.0),
-                                   std::max(bound.upper - value, 0.0));
+    const double value = x[bound.coordinate], wanted = dx[bound.tangent];
+    dx[bound.tangent] =
+        std::clamp(wanted, std::min(bound.lower - value, 0.0), std::max(bound.upper - value, 0.0));
+    clipped_ |= dx[bound.tangent] != wanted;
   }
 }
 
@@ -114,16 +116,24 @@ WeightedStep::Descent WeightedStep::Minimize(ConstrainedLeastSquares& problem, d
   if (!Linearize(problem, *x, lambda, mu)) return descent;
   ForgetScale();
   const double least_damping = damping;
-  double growth = kDampingGrowth;
+  double growth = kDampingGrowth, last_length = 0;
   while (!(descent.stationary = GradientError() <= tolerance)) {
     if (descent.iterations == max_iterations) break;
     double gain = -1;
     if (Compute(problem, *x, damping, max_step)) {
-      if (damping == least_damping && MaxAbs(dx) <= kNegligibleStep) {
+      const double length = MaxAbs(dx);
+      const bool full = damping == least_damping && !clipped_;
+      if (full && length <= kNegligibleStep) {
         descent.stationary = true;  // what is left of the gradient is rounding, times lambda^2
         break;
       }
+      if (full && length * length <= kNegligibleStep * last_length && TakeLastStep(problem, x)) {
+        ++descent.iterations;
+        descent.stationary = true;
+        break;
+      }
       gain = TryStep(problem, lambda, mu, max_step, x);
+      if (gain >= 0) last_length = length;
     }
     ++descent.iterations;
     // Damping follows the gain of the step (Nielsen 1999).
@@ -182,8 +192,10 @@ double WeightedStep::TryStep(ConstrainedLeastSquares& problem, double lambda, co
       static_cast<void>(MoveToTrial(problem, lambda, mu, x));  // back
       return -1;
     }
-    if (correction == 0 && ContractsAtTrial(lambda, mu) && MoveToTrial(problem, lambda, mu, x)) {
-      return 1;
+    if (correction == 0 && ContractsAtTrial(lambda, mu)) {
+      if (MoveToTrial(problem, lambda, mu, x)) return 1;
+      static_cast<void>(MoveToTrial(problem, lambda, mu, x));  // back
+      return -1;
     }
     if (correction == kMaxCorrections || !at_trial_.c.allFinite()) return -1;
     CorrectForCurvature(problem, *x, lambda, max_step);
@@ -206,6 +218,18 @@ bool WeightedStep::ContractsAtTrial(double lambda, const VectorXd& mu) noexcept 
   }
   equations_.Solve(&next_dx_);
   return MaxAbs(next_dx_) < kContraction * MaxAbs(dx);
+}
+
+// After a step so much shorter than the one before, even linear convergence leaves a negligible
+// one: no derivatives are needed to see that x is stationary.
+bool WeightedStep::TakeLastStep(ConstrainedLeastSquares& problem, VectorXd* x) noexcept {
+  problem.Plus(*x, dx, &trial_x_);
+  problem.Evaluate(trial_x_, &at_trial_.r, nullptr, &at_trial_.c, nullptr);
+  if (!std::isfinite(at_trial_.r.sum() + at_trial_.c.sum())) return false;
+  std::swap_ranges(x->begin(), x->end(), trial_x_.begin());
+  at_x.r.swap(at_trial_.r);
+  at_x.c.swap(at_trial_.c);
+  return true;
 }
 
 // Exchanges *x and the trial point, and what is known of them.

@@ -47,7 +47,7 @@ class WeightedStep {
                                  const VectorXd& mu, double damping, double max_step,
                                  double tolerance, int max_iterations, VectorXd* x) noexcept;
 
-  Linearization at_x;          ///< of the last Linearize(), or where Minimize() has ended
+  Linearization at_x;          ///< of the last Linearize(); r and c where Minimize() has ended
   VectorXd dx;                 ///< the step
   bool use_curvature = false;  ///< H + S, S the problem's Curvature() at mu + lambda^2 c
 
@@ -60,6 +60,7 @@ class WeightedStep {
   double TryStep(ConstrainedLeastSquares& problem, double lambda, const VectorXd& mu,
                  double max_step, VectorXd* x) noexcept;
   bool ContractsAtTrial(double lambda, const VectorXd& mu) noexcept;
+  bool TakeLastStep(ConstrainedLeastSquares& problem, VectorXd* x) noexcept;
   bool MoveToTrial(ConstrainedLeastSquares& problem, double lambda, const VectorXd& mu,
                    VectorXd* x) noexcept;
   bool WithinNoise() const noexcept { return promised_ <= noise_; }
@@ -76,6 +77,7 @@ class WeightedStep {
   VectorXd damping_, c_model_, next_dx_;
   VectorXd forces_;  // mu + lambda^2 c, what the constraints pull with
   MatrixXd S_;
+  bool clipped_ = false;             // Clip() has changed dx
   double promised_ = 0, noise_ = 0;  // decrease of phi: by the model, and lost in rounding
 };
 
