@@ -81,7 +81,7 @@ FastOutcome Solve(ConstrainedLeastSquares& problem, const AugmentedLagrangianOpt
     if (slow && lambda >= options.max_weight) ++futile_rounds;
     if (slow) lambda = std::min(kWeightGrowth * lambda, options.max_weight);
     last_error = outcome.constraint_norm;
-    tolerance *= 0.1;
+    tolerance = closed ? 0 : 0.1 * tolerance;  // the multipliers are right: only x may not be yet
   }
   return outcome;
 }
