@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "vmech/kinematics/forward_kinematics.h"
@@ -81,6 +82,7 @@ InverseKinematics::InverseKinematics(const KinematicTree& tree, const GraspFrame
       row_scale_(LoopRowScale(tree)),
       angular_(tree.nv),
       linear_(tree.nv),
+      q_(VectorXd::Constant(tree.nq, std::numeric_limits<double>::quiet_NaN())),
       ws_(tree) {
   options.Validate();
   K_ = EffectiveStiffness(options.stiffness, grasp.kind, tree.length);
@@ -110,23 +112,32 @@ InverseKinematics::InverseKinematics(const KinematicTree& tree, const GraspFrame
 
 void InverseKinematics::Evaluate(const VectorXd& q, VectorXd* r, MatrixXd* J, VectorXd* c,
                                  MatrixXd* C) {
-  ForwardKinematics(tree_, q.data(), &ws_);
+  MoveTo(q);
   if (r || J) EvaluateGrasp(r, J);
   if (c || C) EvaluateLoops(c, C);
+}
+
+// Solvers ask for values and derivatives at one point in two calls, and start where they ended.
+void InverseKinematics::MoveTo(const VectorXd& q) {
+  if (std::equal(q.data(), q.data() + tree_.nq, q_.data())) return;
+  q_ = q;
+  ForwardKinematics(tree_, q.data(), &ws_);
+  LoopErrors(tree_, &ws_);
 }
 
 void InverseKinematics::EvaluateGrasp(VectorXd* r, MatrixXd* J) {
   const Posed X_WG = PoseInWorld(ws_, grasp_.node, grasp_.X_BG);
   const bool rigid = grasp_.kind == GraspKind::kRigid;
-  const Matrix3d R_E = rigid ? Matrix3d(X_WH_.R * X_WG.R.transpose()) : Matrix3d::Identity();
-  if (r) {
-    r->head<3>() = root_.head<3>().cwiseProduct(X_WH_.p - X_WG.p);
-    if (rigid) r->tail<3>() = root_.tail<3>().cwiseProduct(RotationErrorOf(rotation_error_, R_E));
+  Matrix3d A;
+  if (r) r->head<3>() = root_.head<3>().cwiseProduct(X_WH_.p - X_WG.p);
+  if (rigid) {
+    const Matrix3d R_E = X_WH_.R * X_WG.R.transpose();
+    const Vector3d e = RotationErrorOf(rotation_error_, R_E);
+    if (r) r->tail<3>() = root_.tail<3>().cwiseProduct(e);
+    if (J) A = root_.tail<3>().asDiagonal() * RotationErrorJacobian(rotation_error_, R_E, e);
   }
   if (!J) return;
   J->setZero();
-  Matrix3d A = Matrix3d::Zero();
-  if (rigid) A = root_.tail<3>().asDiagonal() * RotationErrorJacobian(rotation_error_, R_E);
   for (const ChainVelocity& c : grasp_chain_) {
     const JointAxis<double> axis = AxisInWorld(tree_, ws_, c.node, c.axis);
     const Vector3d linear = axis.linear + axis.angular.cross(X_WG.p - ws_.nodes[c.node].X_WB.p);
@@ -136,7 +147,6 @@ void InverseKinematics::EvaluateGrasp(VectorXd* r, MatrixXd* J) {
 }
 
 void InverseKinematics::EvaluateLoops(VectorXd* c, MatrixXd* C) {
-  LoopErrors(tree_, &ws_);
   if (C) C->setZero();
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
     const Loop& loop = tree_.loops[l];
@@ -150,7 +160,7 @@ void InverseKinematics::EvaluateLoops(VectorXd* c, MatrixXd* C) {
       const Vector3d linear = axis.linear + axis.angular.cross(s.p_WM - ws_.nodes[k.node].X_WB.p);
       const Vector6d column = ProjectOnRows<double>(
           loop, s, -k.sign * (s.R_WF.transpose() * linear), -k.sign * (D_W * axis.angular));
-      C->col(k.v).segment(loop.row, loop.rows) = scale.cwiseProduct(column.head(loop.rows));
+      for (int i = 0; i < loop.rows; ++i) (*C)(loop.row + i, k.v) = scale[i] * column[i];
     }
   }
 }
@@ -161,8 +171,7 @@ void InverseKinematics::Plus(const VectorXd& q, const VectorXd& dq, VectorXd* q_
 }
 
 void InverseKinematics::Curvature(const VectorXd& q, const VectorXd& mu, MatrixXd* S) {
-  ForwardKinematics(tree_, q.data(), &ws_);
-  LoopErrors(tree_, &ws_);
+  MoveTo(q);
   S->setZero();
   AddGraspCurvature(S);
   for (size_t l = 0; l < tree_.loops.size(); ++l) AddLoopCurvature(static_cast<int>(l), mu, S);
@@ -177,10 +186,10 @@ void InverseKinematics::AddGraspCurvature(MatrixXd* S) {
   weights.G.setZero();
   if (grasp_.kind == GraspKind::kRigid) {
     const Matrix3d R_E = X_WH_.R * X_WG.R.transpose();
-    const Vector3d pull =
-        (K_ / energy_).tail<3>().cwiseProduct(RotationErrorOf(rotation_error_, R_E));
-    weights.g = RotationErrorJacobian(rotation_error_, R_E).transpose() * pull;
-    weights.G = RotationErrorCurvature(rotation_error_, R_E, pull);
+    const Vector3d e = RotationErrorOf(rotation_error_, R_E);
+    const Vector3d pull = (K_ / energy_).tail<3>().cwiseProduct(e);
+    weights.g = RotationErrorJacobian(rotation_error_, R_E, e).transpose() * pull;
+    weights.G = RotationErrorCurvature(rotation_error_, R_E, e, pull);
   }
   UnitTwists(grasp_chain_, Matrix3d::Identity(), X_WG.p);
   AddChainCurvature(grasp_chain_, weights, S);
@@ -234,7 +243,7 @@ void InverseKinematics::AddChainCurvature(const Chain& chain, const CurvatureWei
 }
 
 Posed InverseKinematics::GraspPose(const VectorXd& q) {
-  ForwardKinematics(tree_, q.data(), &ws_);
+  MoveTo(q);
   return PoseInWorld(ws_, grasp_.node, grasp_.X_BG);
 }
 
@@ -250,8 +259,7 @@ Vector6d InverseKinematics::HandWrench(const VectorXd& q) {
 }
 
 VectorXd InverseKinematics::LoopError(const VectorXd& q) {
-  ForwardKinematics(tree_, q.data(), &ws_);
-  LoopErrors(tree_, &ws_);
+  MoveTo(q);
   return StackedLoopErrors(tree_, ws_);
 }
 

@@ -98,6 +98,7 @@ class InverseKinematics final : public ConstrainedLeastSquares {
     Matrix3d G;
   };
 
+  void MoveTo(const VectorXd& q);
   void EvaluateGrasp(VectorXd* r, MatrixXd* J);
   void EvaluateLoops(VectorXd* c, MatrixXd* C);
   void AddGraspCurvature(MatrixXd* S);
@@ -116,6 +117,7 @@ class InverseKinematics final : public ConstrainedLeastSquares {
   Chain grasp_chain_;                       // from the ground to G
   std::vector<Chain> loop_chains_;          // from F to M, per loop
   std::vector<Vector3d> angular_, linear_;  // of UnitTwists
+  VectorXd q_;                              // where ws_ is
   TreeWorkspace<double> ws_;
 };
 

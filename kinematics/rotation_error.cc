@@ -14,11 +14,22 @@ Matrix3d SymmetricPart(const Matrix3d& A) {
   return 0.5 * (A + A.transpose());
 }
 
+/// asin(x)/x of x^2 <= 0.01, to rounding.
+double ArcsineRatio(double x2) {
+  double sum = 143.0 / 10240;
+  for (double c : {231.0 / 13312, 63.0 / 2816, 35.0 / 1152, 5.0 / 112, 3.0 / 40, 1.0 / 6, 1.0}) {
+    sum = c + x2 * sum;
+  }
+  return sum;
+}
+
 Vector3d Logarithm(const Matrix3d& R) {
+  const Vector3d skew = SkewPart(R);  // sin(angle) axis
+  const double sine2 = skew.squaredNorm();
+  if (sine2 < 0.01 && R.trace() > 2) return ArcsineRatio(sine2) * skew;
   Eigen::Quaterniond turn(R);
   if (turn.w() < 0) turn.coeffs() = -turn.coeffs();
   const double sine = turn.vec().norm();  // of half the angle
-  if (sine == 0) return Vector3d::Zero();
   return 2 * std::atan2(sine, turn.w()) / sine * turn.vec();
 }
 
@@ -61,13 +72,14 @@ Vector3d RotationErrorOf(RotationError kind, const Matrix3d& R_E) {
   return kind == RotationError::kLogarithm ? Logarithm(R_E) : SkewPart(R_E);
 }
 
-Matrix3d RotationErrorJacobian(RotationError kind, const Matrix3d& R_E) {
-  if (kind == RotationError::kLogarithm) return -InverseRightJacobian(Logarithm(R_E));
+Matrix3d RotationErrorJacobian(RotationError kind, const Matrix3d& R_E, const Vector3d& e) {
+  if (kind == RotationError::kLogarithm) return -InverseRightJacobian(e);
   return 0.5 * (R_E.transpose() - R_E.trace() * Matrix3d::Identity());
 }
 
-Matrix3d RotationErrorCurvature(RotationError kind, const Matrix3d& R_E, const Vector3d& g) {
-  if (kind == RotationError::kLogarithm) return LogarithmCurvature(Logarithm(R_E), g);
+Matrix3d RotationErrorCurvature(RotationError kind, const Matrix3d& R_E, const Vector3d& e,
+                                const Vector3d& g) {
+  if (kind == RotationError::kLogarithm) return LogarithmCurvature(e, g);
   // g'e'' = 1/2 tr([g]' R_E [u]^2), [u]^2 = u u' - |u|^2.
   const Matrix3d GR = CrossMatrix<double>(g).transpose() * R_E;
   return 0.5 * (SymmetricPart(GR) - GR.trace() * Matrix3d::Identity());

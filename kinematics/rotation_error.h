@@ -16,12 +16,13 @@ enum class RotationError {
 /// The error e(R_E) [rad].
 Vector3d RotationErrorOf(RotationError kind, const Matrix3d& R_E);
 
-/// A = de/deta, where eta turns G: R_WG becomes exp([eta]) R_WG, R_E becomes R_E exp(-[eta]).
-/// A = -1 where e = 0. kLogarithm: A = -Jr(e)^-1, the inverse right Jacobian of SO(3).
-/// [Sola, Deray & Atchuthan 2018, eq. 144]
-Matrix3d RotationErrorJacobian(RotationError kind, const Matrix3d& R_E);
+/// A = de/deta at e = RotationErrorOf(kind, R_E), where eta turns G: R_WG becomes exp([eta]) R_WG,
+/// R_E becomes R_E exp(-[eta]). A = -1 where e = 0. kLogarithm: A = -Jr(e)^-1, the inverse right
+/// Jacobian of SO(3) [Sola, Deray & Atchuthan 2018, eq. 144].
+Matrix3d RotationErrorJacobian(RotationError kind, const Matrix3d& R_E, const Vector3d& e);
 
 /// sum_i g_i d2e_i/deta2, symmetric.
-Matrix3d RotationErrorCurvature(RotationError kind, const Matrix3d& R_E, const Vector3d& g);
+Matrix3d RotationErrorCurvature(RotationError kind, const Matrix3d& R_E, const Vector3d& e,
+                                const Vector3d& g);
 
 }  // namespace vmech
