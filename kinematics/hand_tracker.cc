@@ -1,0 +1,306 @@
+#include "vmech/kinematics/hand_tracker.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "vmech/kinematics/closure.h"
+#include "vmech/solvers/stopping_rule.h"
+
+namespace vmech {
+namespace {
+
+/// |det(A'A_ref)| over det(A_ref'A_ref), below which a pose is in the dead zone: nearly at a dead
+/// centre, on one side or the other.
+constexpr double kDeadZone = 1e-3;
+/// How far a pose in the dead zone is moved back to its side [rad or m].
+constexpr double kBeside = 2e-3;
+/// The reference moves on when it is so far behind [rad or m]; near a dead centre it stays back as
+/// long as it tells something.
+constexpr double kReferenceBehind = 0.05, kReferenceRange = 0.2;
+/// det(A'A_ref) over the largest det(A'A) so far, below which a pose is near a dead centre: where
+/// the hand moves the mechanism 30 times less than elsewhere.
+constexpr double kReferenceNear = 1e-3;
+/// Motions that neither hand nor loops see (a rod that spins) count with this part of the largest.
+constexpr double kUnseen = 1e-12;
+/// A step that is longer than this part of the one before calls for second derivatives.
+constexpr double kSlow = 0.02;
+constexpr int kInverseIterations = 4;
+constexpr int kClosingSteps = 3;
+constexpr double kClosingWeight = 1e3;
+
+double MaxAbs(const VectorXd& v) noexcept {
+  return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0.0;
+}
+
+/// Gaussian elimination with pivoting in place: sign of the determinant, its logarithm in *log.
+int EliminateForSign(MatrixXd& M, double* log) noexcept {
+  const Eigen::Index n = M.rows();
+  int sign = 1;
+  *log = 0;
+  for (Eigen::Index k = 0; k < n; ++k) {
+    Eigen::Index pivot = k;
+    for (Eigen::Index i = k + 1; i < n; ++i) {
+      if (std::abs(M(i, k)) > std::abs(M(pivot, k))) pivot = i;
+    }
+    if (!(std::abs(M(pivot, k)) > 0)) return 0;
+    if (pivot != k) {
+      M.row(k).swap(M.row(pivot));
+      sign = -sign;
+    }
+    if (M(k, k) < 0) sign = -sign;
+    *log += std::log(std::abs(M(k, k)));
+    for (Eigen::Index j = k + 1; j < n; ++j) {
+      const double factor = M(k, j) / M(k, k);
+      for (Eigen::Index i = k + 1; i < n; ++i) M(i, j) -= factor * M(i, k);
+    }
+  }
+  return sign;
+}
+
+}  // namespace
+
+std::string_view NameOf(TrackStatus status) {
+  switch (status) {
+    case TrackStatus::kNotRun:
+      return "not run";
+    case TrackStatus::kFollowed:
+      return "followed";
+    case TrackStatus::kCatchingUp:
+      return "catching up";
+    case TrackStatus::kDeadCentre:
+      return "held at a dead centre";
+    case TrackStatus::kJump:
+      return "held, jump refused";
+    case TrackStatus::kLost:
+      return "held, loops open";
+  }
+  return "?";
+}
+
+void TrackOptions::Validate() const {
+  kinematics.Validate();
+  CheckRange("TrackOptions", "weight", weight, 1, 1e4);
+  CheckRange("TrackOptions", "steps", steps, 1, 20);
+  CheckRange("TrackOptions", "rescue_iterations", rescue_iterations, 0, 100);
+  CheckRange("TrackOptions", "max_move", max_move, 1e-6, 1);
+  CheckRange("TrackOptions", "closure_tolerance", closure_tolerance, 1e-14, 1e-3);
+  CheckRange("TrackOptions", "step_tolerance", step_tolerance, 1e-14, 1e-3);
+}
+
+std::string TrackSummary::BriefReport() const {
+  return fmt::format(
+      "{} targets: {} followed, {} being caught up with, {} held ({} at dead centres, {} jumps "
+      "refused, {} with open loops); {} needed the line search; loops closed to {:.2g}",
+      targets, followed, catching_up, held(), dead_centre, jumps, lost, rescued, worst_closure);
+}
+
+HandTracker::Closing::Closing(InverseKinematics& problem)
+    : ConstrainedLeastSquares({problem.sizes().coordinates, problem.sizes().tangents,
+                               problem.sizes().tangents, problem.sizes().constraints},
+                              problem.bounds()),
+      problem_(problem) {}
+
+void HandTracker::Closing::Evaluate(const VectorXd& q, VectorXd* r, MatrixXd* J, VectorXd* c,
+                                    MatrixXd* C) {
+  if (r) r->setZero();
+  if (J) J->setIdentity();
+  problem_.Evaluate(q, nullptr, nullptr, c, C);
+}
+
+void HandTracker::Closing::Plus(const VectorXd& q, const VectorXd& dq, VectorXd* q_plus) const {
+  problem_.Plus(q, dq, q_plus);
+}
+
+HandTracker::HandTracker(const KinematicTree& tree, const GraspFrame& grasp, const VectorXd& q,
+                         const TrackOptions& options)
+    : problem_(tree, grasp, options.kinematics),
+      closing_(problem_),
+      workspace_(problem_),
+      closing_workspace_(closing_),
+      options_(options),
+      q_(q),
+      trial_(q),
+      good_multipliers_(VectorXd::Zero(tree.rows)),
+      at_trial_(problem_.sizes()),
+      A_(MatrixXd::Zero(problem_.sizes().residuals + tree.rows, tree.nv)),
+      product_(tree.nv, tree.nv),
+      normal_(tree.nv),
+      step_(tree.nv),
+      dead_zone_(q) {
+  options.Validate();
+  rescue_options_.weight = options.weight;
+  rescue_options_.max_weight = std::max(options.weight, rescue_options_.max_weight);
+  rescue_options_.max_step = options.max_move / std::max(1, options.rescue_iterations);
+  rescue_options_.stopping.max_iterations = std::max(1, options.rescue_iterations);
+  closing_options_.weight = closing_options_.max_weight = kClosingWeight;
+  problem_.SetTarget(problem_.GraspPose(q));
+  at_trial_.Evaluate(problem_, q);
+  if (!(MaxAbs(at_trial_.c) <= options.closure_tolerance)) {
+    throw std::invalid_argument(
+        fmt::format("HandTracker: the loops are open by {:.3g} of the characteristic length at the "
+                    "start; close "
+                    "them first (Assemble)",
+                    MaxAbs(at_trial_.c)));
+  }
+  StackJacobians();
+  TakeReference();
+}
+
+TrackStatus HandTracker::Advance(const Posed& X_WH) noexcept {
+  ++summary_.targets;
+  problem_.SetTarget(X_WH);
+  Progress progress = TakeSteps();
+  TrackStatus verdict = Judge();
+  if ((verdict != TrackStatus::kFollowed || progress == Progress::kNone) &&
+      options_.rescue_iterations > 0) {
+    progress = Rescue();
+    verdict = Judge();
+  }
+  if (verdict == TrackStatus::kFollowed) return Accept(progress);
+  if (verdict == TrackStatus::kDeadCentre && StandBeside()) MoveToTrial();
+  return Hold(verdict);
+}
+
+/// Gauss-Newton, and with second derivatives once it turns out to be slow.
+HandTracker::Progress HandTracker::TakeSteps() noexcept {
+  trial_ = q_;
+  double first_error = 0, last_step = 0;
+  bool slow = false;
+  for (int i = 0; i < options_.steps; ++i) {
+    if (!TakeStep(slow)) return Progress::kNone;
+    const double size = MaxAbs(workspace_.step.dx);
+    if (size <= options_.step_tolerance) return Progress::kArrived;
+    slow = slow || (i > 0 && size > kSlow * last_step);
+    if (i == 0) first_error = workspace_.step.at_x.r.squaredNorm();
+    last_step = size;
+  }
+  return workspace_.step.at_x.r.squaredNorm() < first_error ? Progress::kSome : Progress::kNone;
+}
+
+// Paper eq. (8) with the multiplier update, as Step() in augmented_lagrangian.h.
+bool HandTracker::TakeStep(bool with_curvature) noexcept {
+  constexpr double kDamping = 1e-12;
+  WeightedStep& step = workspace_.step;
+  step.ForgetScale();
+  step.use_curvature = with_curvature;
+  const double lambda = options_.weight;
+  if (!step.Linearize(problem_, trial_, lambda, workspace_.multipliers)) return false;
+  if (!step.Compute(problem_, trial_, kDamping, options_.max_move / options_.steps)) return false;
+  workspace_.multipliers += lambda * lambda * step.PredictConstraints();
+  problem_.Plus(trial_, step.dx, &trial_);
+  return true;
+}
+
+/// From the last good pose with second derivatives and descent.
+HandTracker::Progress HandTracker::Rescue() noexcept {
+  ++summary_.rescued;
+  trial_ = q_;
+  workspace_.multipliers = good_multipliers_;
+  const FastOutcome outcome = Solve(problem_, rescue_options_, &trial_, &workspace_);
+  return outcome.claim == SolveStatus::kConverged ? Progress::kArrived : Progress::kSome;
+}
+
+/// The shortest way to closed loops; leaves at_trial_ there.
+void HandTracker::Close() noexcept {
+  for (int i = 0;; ++i) {
+    at_trial_.Evaluate(problem_, trial_);
+    if (i == kClosingSteps || MaxAbs(at_trial_.c) <= options_.closure_tolerance) return;
+    closing_workspace_.multipliers.setZero();
+    if (!Step(closing_, closing_options_, &trial_, &closing_workspace_).ok) return;
+  }
+}
+
+/// Whether trial_ may follow the last good pose: kFollowed, or why not.
+TrackStatus HandTracker::Judge() noexcept {
+  Close();
+  if (!at_trial_.AllFinite()) return TrackStatus::kLost;
+  StackJacobians();
+  determinant_ = BranchDeterminant();
+  if (std::abs(determinant_) < kDeadZone) return TrackStatus::kDeadCentre;
+  if (determinant_ < 0) return TrackStatus::kJump;
+  const bool closed = MaxAbs(at_trial_.c) <= options_.closure_tolerance;
+  return closed ? TrackStatus::kFollowed : TrackStatus::kLost;
+}
+
+void HandTracker::StackJacobians() noexcept {
+  A_.topRows(at_trial_.J.rows()) = at_trial_.J;
+  A_.bottomRows(at_trial_.C.rows()) = at_trial_.C;
+}
+
+/// det(A'A_ref) over det(A_ref'A_ref).
+double HandTracker::BranchDeterminant() noexcept {
+  product_ = A_.transpose().lazyProduct(A_reference_);
+  product_.diagonal().array() += kUnseen * product_.diagonal().cwiseAbs().maxCoeff();
+  double log = 0;
+  const int sign = EliminateForSign(product_, &log);
+  return sign * std::exp(log - log_reference_);
+}
+
+/// From a pose in the dead zone to its side: along the motion that neither hand nor loops resist
+/// there, by inverse iteration on A'A.
+bool HandTracker::StandBeside() noexcept {
+  dead_zone_ = trial_;
+  product_ = A_.transpose().lazyProduct(A_);
+  product_.diagonal().array() += kUnseen * product_.diagonal().maxCoeff();
+  normal_.compute(product_);
+  step_ = VectorXd::LinSpaced(step_.size(), 1, 2);
+  for (int i = 0; i < kInverseIterations; ++i) {
+    normal_.solveInPlace(step_);
+    step_ *= kBeside / MaxAbs(step_);
+  }
+  for (int side = 0; side < 2; ++side, step_ = -step_) {
+    problem_.Plus(dead_zone_, step_, &trial_);
+    Close();
+    StackJacobians();
+    determinant_ = BranchDeterminant();
+    const bool closed = MaxAbs(at_trial_.c) <= options_.closure_tolerance;
+    if (closed && determinant_ > 0) return true;
+  }
+  return false;
+}
+
+TrackStatus HandTracker::Accept(Progress progress) noexcept {
+  good_multipliers_ = workspace_.multipliers;
+  MoveToTrial();
+  const bool arrived = progress == Progress::kArrived;
+  ++(arrived ? summary_.followed : summary_.catching_up);
+  return arrived ? TrackStatus::kFollowed : TrackStatus::kCatchingUp;
+}
+
+void HandTracker::MoveToTrial() noexcept {
+  q_ = trial_;
+  summary_.worst_closure = std::max(summary_.worst_closure, MaxAbs(at_trial_.c));
+  const double behind = (q_ - q_reference_).cwiseAbs().maxCoeff();
+  const bool near = determinant_ * std::exp(log_reference_ - log_best_) < kReferenceNear;
+  if (behind > (near ? kReferenceRange : kReferenceBehind)) TakeReference();
+}
+
+/// The last good pose becomes the reference.
+void HandTracker::TakeReference() noexcept {
+  q_reference_ = q_;
+  A_reference_ = A_;
+  log_reference_ = 0;
+  log_reference_ = std::log(BranchDeterminant());
+  log_best_ = std::max(log_best_, log_reference_);
+}
+
+TrackStatus HandTracker::Hold(TrackStatus why) noexcept {
+  workspace_.multipliers = good_multipliers_;
+  switch (why) {
+    case TrackStatus::kDeadCentre:
+      ++summary_.dead_centre;
+      return why;
+    case TrackStatus::kJump:
+      ++summary_.jumps;
+      return why;
+    default:
+      ++summary_.lost;
+      return TrackStatus::kLost;
+  }
+}
+
+}  // namespace vmech
