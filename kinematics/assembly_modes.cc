@@ -8,7 +8,6 @@
 #include <random>
 #include <stdexcept>
 
-#include "vmech/kinematics/closure.h"
 #include "vmech/kinematics/forward_kinematics.h"
 #include "vmech/kinematics/linear_algebra.h"
 #include "vmech/kinematics/loops.h"

@@ -7,7 +7,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "vmech/kinematics/closure.h"
 #include "vmech/solvers/stopping_rule.h"
 
 namespace vmech {

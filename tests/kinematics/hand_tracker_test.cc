@@ -10,7 +10,6 @@
 
 #include "support/examples.h"
 #include "vmech/kinematics/assembly_modes.h"
-#include "vmech/kinematics/closure.h"
 #include "vmech/kinematics/mobility.h"
 #include "vmech/solvers/nullspace.h"
 
