@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "vmech/apps/ik.h"
+
 namespace vmech {
 
 /// What the vmech command returns to the shell.
@@ -38,5 +40,11 @@ struct CompareArguments {
   int jobs = 0;  ///< processes; 0: as many as there are processors
 };
 int RunCompare(const CompareArguments& arguments);
+
+struct IkArguments {
+  IkQuestion question;
+  bool json = false;
+};
+int RunIk(const IkArguments& arguments);
 
 }  // namespace vmech

@@ -46,6 +46,45 @@ constexpr const char* kCompareHelp =
     "                 here; with more solvers it adds theirs.\n"
     "mpirun -n 4 vmech compare ... gives the same rows.";
 
+constexpr const char* kIkHelp =
+    "Finds the pose of a mechanism that is nearest to that of a hand, with its loops closed and "
+    "its\n"
+    "limits kept, and says how good it is. Lengths and angles are in the units of the file.\n"
+    "  vmech ik four-bar.yaml --target \"0.9 0.6 0\"\n"
+    "  vmech ik arm.yaml --target \"300 0 450  0 90 0\" --grasp handle --start elbow=40";
+
+void AddIk(CLI::App* app, vmech::IkArguments* ik) {
+  CLI::App* command = app->add_subcommand("ik", kIkHelp);
+  vmech::IkQuestion& question = ik->question;
+  command->add_option("MECHANISM", question.mechanism, "mechanism file, YAML or JSON")
+      ->required()
+      ->type_name("FILE");
+  command
+      ->add_option("--target", question.target,
+                   "pose of the hand in the world: \"x y z\", \"x y z rx ry rz\" (rotation "
+                   "vector) or \"x y z qw qx qy qz\"; without a rotation that of the start")
+      ->required()
+      ->type_name("NUMBERS");
+  command->add_option("--grasp", question.grasp, "by which it is held (default: the first)")
+      ->type_name("NAME");
+  command->add_option("--solver", question.solver, "who solves it")
+      ->type_name("NAME")
+      ->capture_default_str();
+  command
+      ->add_option("--start", question.start,
+                   "where a joint starts, which decides the branch; may be given several times")
+      ->type_name("JOINT=VALUE");
+  command
+      ->add_option("--stiffness", question.stiffness,
+                   "of the hand along and about x, y, z [N/m, N m/rad] (default: 1 N/m and as "
+                   "much over the characteristic length)")
+      ->type_name("NUMBERS");
+  command->add_flag("--paper-rotation", question.paper_rotation,
+                    "rotation error of the paper (sine) instead of the angle");
+  command->add_flag("--no-limits", question.no_limits, "ignore the limits of joints");
+  command->add_flag("--json", ik->json, "print JSON instead of text");
+}
+
 int Run(int argc, char** argv) {
   CLI::App app{"vmech: mechanisms, their motion, the loads on their joints, and bearings for them",
                "vmech"};
@@ -91,14 +130,18 @@ int Run(int argc, char** argv) {
       ->capture_default_str();
   compare_command->add_flag("-q,--quiet", compare.quiet, "print nothing but errors");
 
+  vmech::IkArguments ik;
+  AddIk(&app, &ik);
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? vmech::kSuccess : vmech::kBadUsage;
   }
-  const int code = check_command->parsed()   ? RunCheck(check)
-                   : loads_command->parsed() ? RunLoads(loads)
-                                             : RunCompare(compare);
+  const int code = check_command->parsed()    ? RunCheck(check)
+                   : loads_command->parsed()  ? RunLoads(loads)
+                   : app.got_subcommand("ik") ? RunIk(ik)
+                                              : RunCompare(compare);
   if (std::fflush(stdout) != 0) throw vmech::FileErrors("standard output", "cannot be written");
   return code;
 }

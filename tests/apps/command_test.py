@@ -81,11 +81,13 @@ class Help(unittest.TestCase):
     def test_lists_subcommands_and_every_exit_code(self):
         result = vmech("--help")
         self.assertEqual(result.returncode, 0)
-        for word in ("check", "loads", "Exit codes", *(f"{code} " for code in range(6))):
+        for word in ("check", "loads", "ik", "Exit codes", *(f"{code} " for code in range(6))):
             self.assertIn(word, result.stdout)
 
     def test_of_subcommands_names_arguments_options_outputs_and_exit_codes(self):
         for name, words in (("check", ("MECHANISM", "--json")),
+                            ("ik", ("MECHANISM", "--target", "--grasp", "--solver", "--start",
+                                    "--json")),
                             ("loads", ("STUDY", "--out", "--threads", "--quiet", *OUTPUTS))):
             result = vmech(name, "--help")
             self.assertEqual(result.returncode, 0)
@@ -96,7 +98,7 @@ class Help(unittest.TestCase):
         self.assertRegex(vmech("--version").stdout, r"^vmech \d+\.\d+\.\d+\n$")
 
     def test_wrong_command_lines_are_code_1_on_standard_error(self):
-        for arguments in ((), ("chekc",), ("check",), ("loads",), ("check", "a", "b"),
+        for arguments in ((), ("chekc",), ("check",), ("loads",), ("check", "a", "b"), ("ik", "four-bar.yaml"),
                           ("loads", "s.yaml", "--threads", "65"), ("loads", "s.yaml", "--outt")):
             with self.subTest(arguments=arguments):
                 result = vmech(*arguments)
@@ -173,6 +175,96 @@ class Check(InFolder):
             result = self.run_vmech("check", name)
             self.assertEqual(result.returncode, 2)
             self.assertIn("cannot be opened", result.stderr)
+
+
+class Ik(InFolder):
+    """Lengths and angles on the command line are in the units of the file."""
+
+    def answer(self, *arguments):
+        result = self.run_vmech("ik", *arguments, "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return json.loads(result.stdout)
+
+    @staticmethod
+    def value(answer, joint):
+        return next(j["values"][0] for j in answer["joints"] if j["name"] == joint)
+
+    def test_reaches_a_point_in_the_units_of_the_file(self):
+        # Crank at 60 degrees: the piston is at 50 cos 60 + sqrt(150^2 - (50 sin 60)^2) mm. The
+        # grasp is 100 mm along the rod, which leans by asin(50 sin 60 / 150).
+        lean = math.asin(50 * math.sin(math.pi / 3) / 150)
+        x = 50 * math.cos(math.pi / 3) + 100 * math.cos(lean)
+        y = 50 * math.sin(math.pi / 3) - 100 * math.sin(lean)
+        target = f"{x!r} {y!r} 0  0 0 {math.degrees(-lean)!r}"
+        answer = self.answer("slider-crank.yaml", "--target", target)
+        self.assertEqual((answer["verdict"], answer["branch"]), ("reached", "same"))
+        self.assertAlmostEqual(self.value(answer, "main"), math.pi / 3, delta=1e-9)
+        text = self.run_vmech("ik", "slider-crank.yaml", "--target", target).stdout
+        self.assertRegex(text, r"(?m)^  main +60(\.0+\d)? deg$|^  main +59\.9+\d* deg$")
+
+    def test_calls_what_is_too_far_out_of_reach_and_gives_the_nearest_pose(self):
+        answer = self.answer("two-link-arm.yaml", "--target", "3 4 0")
+        self.assertEqual(answer["verdict"], "out of reach")
+        self.assertEqual(answer["status"], "converged")
+        self.assertLess(answer["kkt_error"], 1e-8)
+        # 0.9 m of arm point at a hand 5 m away.
+        self.assertAlmostEqual(math.hypot(*answer["e1"]["position"]), 4.1, delta=1e-9)
+        self.assertAlmostEqual(self.value(answer, "shoulder"), math.atan2(4, 3), delta=1e-6)
+
+    def test_goes_to_the_branch_of_the_start(self):
+        up = self.answer("two-link-arm.yaml", "--target", "0.5 0.3 0", "--start", "elbow=-60")
+        down = self.answer("two-link-arm.yaml", "--target", "0.5 0.3 0", "--start", "elbow=60")
+        for answer in (up, down):
+            self.assertEqual((answer["verdict"], answer["branch"]), ("reached", "same"))
+        self.assertAlmostEqual(self.value(up, "elbow"), -self.value(down, "elbow"), delta=1e-8)
+
+    def test_is_the_same_by_every_exact_solver(self):
+        target = "0.9 0.7 0.05  0 0 0.4"
+        reference = self.answer("four-bar.yaml", "--target", target)
+        self.assertEqual(reference["verdict"], "out of reach")
+        for solver in ("augmented_lagrangian", "ipopt", "kinsol", "ceres_exact"):
+            with self.subTest(solver=solver):
+                result = self.run_vmech("ik", "four-bar.yaml", "--target", target, "--solver",
+                                        solver, "--json")
+                answer = json.loads(result.stdout)
+                if answer["status"] == "unavailable":
+                    self.skipTest(answer["message"])
+                self.assertEqual(result.returncode, 0, result.stdout)
+                self.assertAlmostEqual(self.value(answer, "main"), self.value(reference, "main"),
+                                       delta=1e-8)
+        biased = self.answer("four-bar.yaml", "--target", target, "--solver", "penalty")
+        self.assertEqual(biased["verdict"], "biased")
+        self.assertLessEqual(0, biased["bias_bound"])
+        self.assertGreater(biased["e2"]["length"], 1e-9)
+
+    def test_takes_a_rotation_vector_or_a_quaternion(self):
+        half = math.radians(20) / 2
+        one = self.answer("crank.yaml", "--grasp", "handle", "--target", "0.3 0.1 0 0 0 20")
+        two = self.answer("crank.yaml", "--grasp", "handle", "--target",
+                          f"0.3 0.1 0 {math.cos(half)!r} 0 0 {math.sin(half)!r}")
+        self.assertAlmostEqual(self.value(one, "main"), self.value(two, "main"), delta=1e-10)
+
+    def test_balances_the_pull_of_the_hand_at_the_cut_joints(self):
+        answer = self.answer("four-bar.yaml", "--target", "0.9 0.9 0", "--stiffness",
+                             "1000 1000 1000 0 0 0")
+        self.assertGreater(math.hypot(*answer["loops"][0]["force"]), 1)
+        self.assertEqual(answer["stiffness"], [1000, 1000, 1000, 0, 0, 0])
+
+    def test_refuses_what_it_does_not_understand_with_a_remedy(self):
+        for arguments, words in (
+                (("--target", "1 2"), ("2 numbers", "x y z")),
+                (("--target", "1 2 x"), ("'x' is not a number",)),
+                (("--target", "1 2 3 0 0 0 0"), ("quaternion",)),
+                (("--target", "1 2 3", "--grasp", "handel"), ("did you mean 'handle'?",)),
+                (("--target", "1 2 3", "--solver", "newton"), ("nullspace",)),
+                (("--target", "1 2 3", "--start", "mein=1"), ("did you mean 'main'?",)),
+                (("--target", "1 2 3", "--start", "main"), ("--start joint=30",)),
+                (("--target", "1 2 3", "--stiffness", "1 2"), ("six",))):
+            with self.subTest(arguments=arguments):
+                result = self.run_vmech("ik", "four-bar.yaml", *arguments)
+                self.assertEqual((result.returncode, result.stdout), (2, ""))
+                for word in words:
+                    self.assertIn(word, result.stderr)
 
 
 class WellFormed(html.parser.HTMLParser):
