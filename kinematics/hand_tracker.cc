@@ -141,8 +141,7 @@ HandTracker::HandTracker(const KinematicTree& tree, const GraspFrame& grasp, con
   if (!(MaxAbs(at_trial_.c) <= options.closure_tolerance)) {
     throw std::invalid_argument(
         fmt::format("HandTracker: the loops are open by {:.3g} of the characteristic length at the "
-                    "start; close "
-                    "them first (Assemble)",
+                    "start; close them first (Assemble)",
                     MaxAbs(at_trial_.c)));
   }
   StackJacobians();
@@ -257,9 +256,17 @@ bool HandTracker::StandBeside() noexcept {
     StackJacobians();
     determinant_ = BranchDeterminant();
     const bool closed = MaxAbs(at_trial_.c) <= options_.closure_tolerance;
-    if (closed && determinant_ > 0) return true;
+    if (closed && determinant_ > 0 && WithinLimits()) return true;
   }
   return false;
+}
+
+bool HandTracker::WithinLimits() const noexcept {
+  for (const Bound& bound : problem_.bounds()) {
+    const double value = trial_[bound.coordinate];
+    if (value < bound.lower || value > bound.upper) return false;
+  }
+  return true;
 }
 
 TrackStatus HandTracker::Accept(Progress progress) noexcept {

@@ -107,6 +107,7 @@ class HandTracker {
   void StackJacobians() noexcept;
   double BranchDeterminant() noexcept;
   bool StandBeside() noexcept;
+  bool WithinLimits() const noexcept;
   TrackStatus Accept(Progress progress) noexcept;
   TrackStatus Hold(TrackStatus why) noexcept;
   void MoveToTrial() noexcept;
