@@ -146,7 +146,7 @@ TEST_P(Pulled, PenaltyLeavesLoopsOpenByItsBoundWhichFallsWithLambdaSquared) {
 TEST_P(Pulled, MultiplierUpdateClosesLoopsWithinATenthOfANanometre) {
   const Summary summary = Solve(problem_, AugmentedLagrangianOptions{}, q_);
   EXPECT_TRUE(summary.converged()) << summary.BriefReport();
-  EXPECT_LE(problem_.LoopError(summary.x).cwiseAbs().maxCoeff(), 1e-10);
+  EXPECT_LE(problem_.LoopError(summary.x).lpNorm<Eigen::Infinity>(), 1e-10);
 }
 
 // Planar linkages modelled in space, Bennett's, Bricard's: loops with redundant equations.
