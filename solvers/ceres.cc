@@ -41,7 +41,8 @@ class CeresSolver {
       : problem_(problem),
         options_(options),
         x_(*x),
-        weight_(kFirstWeight),
+        weight_(options.method == CeresMethod::kExact ? kFirstWeight
+                                                      : std::min(kFirstWeight, options.weight)),
         mu_(VectorXd::Zero(problem.sizes().constraints)),
         at_x_(problem.sizes()),
         held_(problem.sizes().tangents, false) {
@@ -192,7 +193,7 @@ class CeresSolver {
 
 void CeresOptions::Validate() const {
   CheckRange("CeresOptions", "weight", weight, 1, 1e6);
-  CheckRange("CeresOptions", "max_weight", max_weight, weight, 1e7);
+  CheckRange("CeresOptions", "max_weight", max_weight, kFirstWeight, 1e7);
   stopping.Validate();
 }
 

@@ -22,9 +22,11 @@ enum class CeresMethod {
 /// [Agarwal, Mierle et al., Ceres Solver 2.1; Nocedal & Wright 2006, 17.3 and 16.5]
 struct CeresOptions {
   CeresMethod method = CeresMethod::kExact;
-  /// w [-], in [1, 1e6], see PenaltyOptions::weight; kExact begins with it.
+  /// w of kWeighted [-], in [1, 1e6], see PenaltyOptions::weight. Reached from 10 by powers of ten,
+  /// so that curved constraints are met while they are soft.
   double weight = 1e3;
-  /// Largest w [-], in [weight, 1e7]: kExact raises it where the constraints close too slowly.
+  /// Largest w of kExact [-], in [10, 1e7], which begins with 10 and raises it where the
+  /// constraints close too slowly.
   double max_weight = 1e5;
   StoppingRule stopping;
 
