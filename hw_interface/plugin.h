@@ -5,8 +5,7 @@
  * real-time thread: no heap, no lock, no log. Units are SI, frames as in master.h: D the device's
  * base, H its handle, wrenches [f; m] on the hand, about the handle's origin, in the axes of D.
  */
-#ifndef VMECH_HW_INTERFACE_PLUGIN_H_
-#define VMECH_HW_INTERFACE_PLUGIN_H_
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -77,6 +76,4 @@ int vmech_plugin_create(const char* parameters, vmech_plugin* plugin, char* erro
 
 #ifdef __cplusplus
 }
-#endif
-
 #endif
