@@ -1,12 +1,12 @@
 #include "vmech/hw_interface/arm_torques.h"
 
-#include "vmech/hw_interface/check_range.h"
+#include "vmech/solvers/stopping_rule.h"
 
 namespace vmech {
 
 void PostureOptions::Validate() const {
-  CheckRange("posture", "stiffness", stiffness, 0, 100);
-  CheckRange("posture", "damping", damping, 0, 10);
+  CheckRange("PostureOptions", "stiffness", stiffness, 0, 100);
+  CheckRange("PostureOptions", "damping", damping, 0, 10);
 }
 
 ArmTorques::ArmTorques(const PostureOptions& options, std::shared_ptr<const ArmDescription> arm,

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vmech/hw_interface/check_range.h"
+#include "vmech/solvers/stopping_rule.h"
 
 namespace vmech {
 namespace {
@@ -57,8 +57,8 @@ MotionEstimate FiniteDifferences::Update(double x) noexcept {
 
 KalmanEstimator::KalmanEstimator(double period, double resolution, double jerk_density)
     : period_(CheckedPeriod(period)) {
-  CheckRange("Kalman estimator", "resolution", resolution, 1e-12, 1);
-  CheckRange("Kalman estimator", "jerk_density", jerk_density, 1e-6, 1e12);
+  CheckRange("KalmanEstimator", "resolution", resolution, 1e-12, 1);
+  CheckRange("KalmanEstimator", "jerk_density", jerk_density, 1e-6, 1e12);
   gain_ = SteadyGains(period, resolution * resolution / 12, jerk_density);
 }
 
@@ -79,7 +79,7 @@ MotionEstimate KalmanEstimator::Update(double x) noexcept {
 
 QuadraticFit::QuadraticFit(double period, int window) : window_(window) {
   CheckedPeriod(period);
-  CheckRange("quadratic fit", "window", window, 3, kMaxWindow);
+  CheckRange("QuadraticFit", "window", window, 3, kMaxWindow);
   // Normal equations of x(t) = c0 + c1 t + c2 t^2 at t = 0, -T, ..., -(n-1) T, in units of n T.
   const double span = window * period;
   Matrix3 N = Matrix3::Zero();
@@ -116,8 +116,8 @@ MotionEstimate QuadraticFit::Update(double x) noexcept {
 
 AdaptiveWindow::AdaptiveWindow(double period, double noise, int window)
     : period_(CheckedPeriod(period)), noise_(noise), window_(window) {
-  CheckRange("adaptive window", "noise", noise, 1e-12, 1);
-  CheckRange("adaptive window", "window", window, 2, kMaxWindow);
+  CheckRange("AdaptiveWindow", "noise", noise, 1e-12, 1);
+  CheckRange("AdaptiveWindow", "window", window, 2, kMaxWindow);
 }
 
 /// The best line through the newest n + 1 samples, and whether all of them lie within the noise.

@@ -2,14 +2,14 @@
 
 #include <algorithm>
 
-#include "vmech/hw_interface/check_range.h"
+#include "vmech/solvers/stopping_rule.h"
 
 namespace vmech {
 
 void PassivityOptions::Validate() const {
-  CheckRange("passivity", "credit", credit, 0, 10);
-  CheckRange("passivity", "lever", lever, 1e-3, 10);
-  CheckRange("passivity", "largest_debt", largest_debt, 1e-4, 100);
+  CheckRange("PassivityOptions", "credit", credit, 0, 10);
+  CheckRange("PassivityOptions", "lever", lever, 1e-3, 10);
+  CheckRange("PassivityOptions", "largest_debt", largest_debt, 1e-4, 100);
 }
 
 PassivityController::PassivityController(const PassivityOptions& options, const DeviceInfo& info)

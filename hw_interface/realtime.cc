@@ -10,9 +10,9 @@
 
 #if defined(__SSE__)
 #include <xmmintrin.h>
-#endif
 
-#include "vmech/hw_interface/check_range.h"
+#include "vmech/solvers/stopping_rule.h"
+#endif
 
 namespace vmech {
 namespace {
@@ -52,7 +52,7 @@ void RestoreFloatingPoint([[maybe_unused]] unsigned mode) noexcept {
 }
 
 void RealtimeOptions::Validate() const {
-  CheckRange("real time", "priority", priority, 0, 99);
+  CheckRange("RealtimeOptions", "priority", priority, 0, 99);
 }
 
 std::string RealtimeReport::BriefReport() const {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vmech/hw_interface/check_range.h"
+#include "vmech/solvers/stopping_rule.h"
 
 namespace vmech {
 namespace {
@@ -24,9 +24,9 @@ std::size_t RingSize(const RunnerOptions& options, std::uint64_t slots) {
 }  // namespace
 
 void RunnerOptions::Validate() const {
-  CheckRange("runner", "seconds", seconds, record ? 1e-9 : 0, 1e6);
-  CheckRange("runner", "keep", keep, 1, 1e6);
-  CheckRange("runner", "command_life", command_life, 1, 1000);
+  CheckRange("RunnerOptions", "seconds", seconds, record ? 1e-9 : 0, 1e6);
+  CheckRange("RunnerOptions", "keep", keep, 1, 1e6);
+  CheckRange("RunnerOptions", "command_life", command_life, 1, 1000);
   safety.Validate();
   posture.Validate();
   if (realtime) realtime->Validate();

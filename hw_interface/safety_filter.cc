@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vmech/hw_interface/check_range.h"
 #include "vmech/kinematics/follow_hand.h"
+#include "vmech/solvers/stopping_rule.h"
 
 namespace vmech {
 namespace {
@@ -26,8 +26,8 @@ SafetyOptions Completed(SafetyOptions options, const DeviceInfo& info) {
   complete(&options.max_moment, info.angular.peak);
   complete(&options.max_speed, info.linear.max_speed);
   complete(&options.max_angular_speed, info.angular.max_speed);
-  CheckRange("safety of '" + info.name + "'", "max_force", options.max_force, 1e-6, 1e4);
-  CheckRange("safety of '" + info.name + "'", "max_moment", options.max_moment, 0, 1e3);
+  CheckRange("SafetyOptions for '" + info.name + "'", "max_force", options.max_force, 1e-6, 1e4);
+  CheckRange("SafetyOptions for '" + info.name + "'", "max_moment", options.max_moment, 0, 1e3);
   return options;
 }
 
@@ -44,15 +44,15 @@ double Shrink(const Vector6d& F, double force, double moment) {
 }  // namespace
 
 void SafetyOptions::Validate() const {
-  CheckRange("safety", "soft_start", soft_start, 0, 10);
-  CheckRange("safety", "hold_periods", hold_periods, 0, 1000);
-  CheckRange("safety", "max_force", max_force, 0, 1e4);
-  CheckRange("safety", "max_moment", max_moment, 0, 1e3);
-  CheckRange("safety", "force_slew", force_slew, 1, 1e7);
-  CheckRange("safety", "moment_slew", moment_slew, 0.1, 1e6);
-  CheckRange("safety", "max_speed", max_speed, 0, 100);
-  CheckRange("safety", "max_angular_speed", max_angular_speed, 0, 1000);
-  CheckRange("safety", "energy_trip", energy_trip, 1e-4, 100);
+  CheckRange("SafetyOptions", "soft_start", soft_start, 0, 10);
+  CheckRange("SafetyOptions", "hold_periods", hold_periods, 0, 1000);
+  CheckRange("SafetyOptions", "max_force", max_force, 0, 1e4);
+  CheckRange("SafetyOptions", "max_moment", max_moment, 0, 1e3);
+  CheckRange("SafetyOptions", "force_slew", force_slew, 1, 1e7);
+  CheckRange("SafetyOptions", "moment_slew", moment_slew, 0.1, 1e6);
+  CheckRange("SafetyOptions", "max_speed", max_speed, 0, 100);
+  CheckRange("SafetyOptions", "max_angular_speed", max_angular_speed, 0, 1000);
+  CheckRange("SafetyOptions", "energy_trip", energy_trip, 1e-4, 100);
   passivity.Validate();
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "vmech/hw_interface/check_range.h"
+#include "vmech/solvers/stopping_rule.h"
 
 namespace vmech {
 namespace {
@@ -24,18 +24,18 @@ double Quantised(double value, double count) {
 }  // namespace
 
 void SimulatedMasterOptions::Validate() const {
-  CheckRange("simulated master", "period", period, 1e-5, 0.1);
-  CheckRange("simulated master", "substeps", substeps, 1, 100);
-  if (encoder_bits != 0) CheckRange("simulated master", "encoder_bits", encoder_bits, 8, 24);
-  CheckRange("simulated master", "delay_periods", delay_periods, 0, 16);
-  CheckRange("simulated master", "lost_share", lost_share, 0, 0.999);
-  CheckRange("simulated master", "stop_stiffness", stop_stiffness, 1e-9, 1e6);
-  CheckRange("simulated master", "stop_damping", stop_damping, 0, 1e4);
-  CheckRange("simulated master", "hand.mass", hand.mass, 0, 5);
-  CheckRange("simulated master", "gripper_damping", gripper_damping, 1e-6, 1e3);
+  CheckRange("SimulatedMasterOptions", "period", period, 1e-5, 0.1);
+  CheckRange("SimulatedMasterOptions", "substeps", substeps, 1, 100);
+  if (encoder_bits != 0) CheckRange("SimulatedMasterOptions", "encoder_bits", encoder_bits, 8, 24);
+  CheckRange("SimulatedMasterOptions", "delay_periods", delay_periods, 0, 16);
+  CheckRange("SimulatedMasterOptions", "lost_share", lost_share, 0, 0.999);
+  CheckRange("SimulatedMasterOptions", "stop_stiffness", stop_stiffness, 1e-9, 1e6);
+  CheckRange("SimulatedMasterOptions", "stop_damping", stop_damping, 0, 1e4);
+  CheckRange("SimulatedMasterOptions", "hand.mass", hand.mass, 0, 5);
+  CheckRange("SimulatedMasterOptions", "gripper_damping", gripper_damping, 1e-6, 1e3);
 }
 
-SimulatedMaster::SimulatedMaster(SimulatedMasterOptions options)
+SimulatedMaster::SimulatedMaster(const SimulatedMasterOptions& options)
     : SimulatedMaster(options, SarcosMasterArm(options.hand.mass)) {}
 
 SimulatedMaster::SimulatedMaster(SimulatedMasterOptions options, ArmDescription arm)

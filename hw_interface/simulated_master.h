@@ -37,7 +37,7 @@ class SimulatedMaster : public Master {
  public:
   static constexpr int kMaxCatchUp = 100;
 
-  explicit SimulatedMaster(SimulatedMasterOptions options = {});
+  explicit SimulatedMaster(const SimulatedMasterOptions& options = {});
   SimulatedMaster(SimulatedMasterOptions options, ArmDescription arm);
   ~SimulatedMaster() override { Shutdown(); }
 

@@ -11,7 +11,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "vmech/hw_interface/check_range.h"
+#include "vmech/solvers/stopping_rule.h"
 
 namespace vmech {
 namespace {
@@ -45,9 +45,9 @@ int Connect(const std::string& path) {
 }  // namespace
 
 void SpacenavOptions::Validate() const {
-  CheckRange("spacenav", "period", period, 1e-4, 0.1);
-  CheckRange("spacenav", "speed", speed, 1e-9, 1);
-  CheckRange("spacenav", "angular_speed", angular_speed, 1e-9, 10);
+  CheckRange("SpacenavOptions", "period", period, 1e-4, 0.1);
+  CheckRange("SpacenavOptions", "speed", speed, 1e-9, 1);
+  CheckRange("SpacenavOptions", "angular_speed", angular_speed, 1e-9, 10);
 }
 
 SpacenavMaster::SpacenavMaster(SpacenavOptions options)

@@ -6,13 +6,13 @@
 #include <random>
 #include <thread>
 
-#include "vmech/hw_interface/check_range.h"
+#include "vmech/solvers/stopping_rule.h"
 
 namespace vmech {
 
 void UdpMasterOptions::Validate() const {
-  CheckRange("udp master", "connect_timeout", connect_timeout, 0.01, 60);
-  CheckRange("udp master", "link_timeout", link_timeout, 1e-3, 10);
+  CheckRange("UdpMasterOptions", "connect_timeout", connect_timeout, 0.01, 60);
+  CheckRange("UdpMasterOptions", "link_timeout", link_timeout, 1e-3, 10);
 }
 
 UdpMaster::UdpMaster(UdpMasterOptions options)

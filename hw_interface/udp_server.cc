@@ -2,14 +2,14 @@
 
 #include <algorithm>
 
-#include "vmech/hw_interface/check_range.h"
+#include "vmech/solvers/stopping_rule.h"
 
 namespace vmech {
 
 void UdpServerOptions::Validate() const {
-  CheckRange("udp server", "hold", hold, 0, 0.1);
-  CheckRange("udp server", "ramp", ramp, 1e-3, 1);
-  CheckRange("udp server", "release", release, 0.1, 60);
+  CheckRange("UdpServerOptions", "hold", hold, 0, 0.1);
+  CheckRange("UdpServerOptions", "ramp", ramp, 1e-3, 1);
+  CheckRange("UdpServerOptions", "release", release, 0.1, 60);
 }
 
 UdpServer::UdpServer(const UdpServerOptions& options, Master* device)

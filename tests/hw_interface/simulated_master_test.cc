@@ -208,7 +208,7 @@ TEST(SimulatedMasterOptions, NameWhatIsOutOfRange) {
     options.Validate();
     FAIL() << "accepted";
   } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(), "simulated master: period = 3, must lie in [1e-05, 0.1]");
+    EXPECT_STREQ(error.what(), "SimulatedMasterOptions.period = 3, must be in [1e-05, 0.1]");
   }
 }
 
