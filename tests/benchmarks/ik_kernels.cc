@@ -18,10 +18,13 @@ struct State {
   Linearization at_x{problem.sizes()};
 };
 
-/// The slider-crank's grasp and loop errors with their Jacobians.
+/// The slider-crank's grasp and loop errors with their Jacobians, at another pose every time.
 std::function<void()> SliderCrankEvaluation() {
   auto state = std::make_shared<State>();
-  return [state] { state->at_x.Evaluate(state->problem, state->x); };
+  return [state] {
+    state->x[0] += 1e-6;
+    state->at_x.Evaluate(state->problem, state->x);
+  };
 }
 
 /// A warm-started solve of the slider-crank by the penalty.
