@@ -109,9 +109,8 @@ int Compare(const CompareArguments& arguments, MpiSession* mpi) {
   };
   std::vector<Result> results;
   {
-    ProgressBar bar("compare", ProblemsOf(suite).size() * solvers.size(), arguments.quiet);
-    results = RunComparison(suite, solvers, spread, &journal,
-                            [&](size_t done, size_t) { bar.Show(done); });
+    ProgressBar bar("compare", RowsOf(suite, solvers), arguments.quiet);
+    results = RunComparison(suite, solvers, spread, &journal, [&](size_t done) { bar.Show(done); });
   }
   OutputFolder folder(folder_name);
   folder.Write("results.csv", ResultsTable(suite, results));

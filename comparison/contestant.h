@@ -10,19 +10,23 @@
 
 namespace vmech {
 
-/// Who takes part in a comparison: one of the back ends of solvers/.
+/// Who takes part in a comparison: the back ends of solvers/, and the fast path
+/// (kinematics/hand_tracker.h), which follows paths only.
 class Contestant {
  public:
   Contestant() = default;  ///< the first one
-  explicit Contestant(Backend backend) : backend_(backend) {}
+  explicit Contestant(Backend backend) : place_(static_cast<int>(backend)) {}
+  static Contestant FastPath();
 
-  Backend backend() const { return backend_; }
-  std::string_view name() const { return NameOf(backend_); }
+  std::string_view name() const;
+  /// None for the fast path.
+  std::optional<Backend> backend() const;
+  bool Takes(const TargetBlock& block) const { return backend() || block.is_path(); }
 
   friend auto operator<=>(const Contestant&, const Contestant&) = default;
 
  private:
-  Backend backend_ = kAllBackends[0];
+  int place_ = 0;  // in the order of tables: that of Backend, then the fast path
 };
 
 /// All of them, in the order of tables.

@@ -5,12 +5,16 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <memory>
 #include <vector>
 
 #include "vmech/comparison/closed_walk.h"
 #include "vmech/comparison/statistics.h"
+#include "vmech/kinematics/hand_tracker.h"
 #include "vmech/kinematics/linear_algebra.h"
 #include "vmech/kinematics/mobility.h"
+#include "vmech/solvers/run.h"
 
 namespace vmech {
 namespace {
@@ -65,22 +69,19 @@ double LeastCurvature(ConstrainedLeastSquares& problem, const Summary& summary) 
   return eigenvalues[0] / std::max(eigenvalues.cwiseAbs().maxCoeff(), 1e-300);
 }
 
-/// One solve, its summary and what we measure of it.
+/// What came out of one solve, and what we measure of it.
 class Judged {
  public:
-  Judged(const Suite& suite, const Problem& problem, Subject* subject, size_t target)
-      : suite_(suite), problem_(problem), subject_(*subject), target_(target) {}
-
-  const Summary& Solve(Contestant solver, const VectorXd& x0) {
+  Judged(const Suite& suite, const Problem& problem, Subject* subject, size_t target,
+         const Summary& summary)
+      : suite_(suite), problem_(problem), subject_(*subject), target_(target), summary_(summary) {
     InverseKinematics& ik = subject_.problem();
-    ik.SetTarget(problem_.targets[target_]);
-    summary_ = vmech::Solve(solver.backend(), ik, suite_.stopping, x0);
     e1_ = ik.HandError(summary_.x);
     if (ik.grasp().kind == GraspKind::kPoint) e1_.tail<3>().setZero();
     distance_ = ConfigurationDistance(subject_.tree(), summary_.x, problem_.own[target_]);
-    return summary_;
   }
 
+  const Summary& summary() const { return summary_; }
   bool feasible() const {
     return summary_.constraint_norm <= suite_.stopping.constraint_tolerance &&
            summary_.bound_violation <= suite_.stopping.constraint_tolerance;
@@ -144,38 +145,61 @@ class Judged {
   const Problem& problem_;
   Subject& subject_;
   size_t target_;
-  Summary summary_;
+  const Summary& summary_;
   Vector6d e1_ = Vector6d::Zero();
   double distance_ = 0;
 };
 
+/// Brings the grasp towards a target, from x0.
+using Solver = std::function<Summary(const Posed& X_WH, const VectorXd& x0)>;
+
+Solver SolverOf(Backend backend, const Suite& suite, Subject* subject) {
+  return [=, &suite](const Posed& X_WH, const VectorXd& x0) {
+    subject->problem().SetTarget(X_WH);
+    return Solve(backend, subject->problem(), suite.stopping, x0);
+  };
+}
+
+/// The fast path keeps its own configuration and multipliers from target to target.
+Solver FastPathFrom(const VectorXd& q, const Suite& suite, Subject* subject) {
+  auto tracker = std::make_shared<HandTracker>(subject->tree(), subject->problem().grasp(), q);
+  return [=, &suite](const Posed& X_WH, const VectorXd&) {
+    subject->problem().SetTarget(X_WH);
+    return Run("hand_tracker", subject->problem(), suite.stopping, tracker->q(),
+               [&](CountedProblem&, VectorXd* x) {
+                 const TrackStatus status = tracker->Advance(X_WH);
+                 *x = tracker->q();
+                 return Outcome{SolveStatus::kStalled, std::string(NameOf(status)), 1};
+               });
+  };
+}
+
 void SolvePose(const Suite& suite, TargetKind kind, const Problem& problem, Subject* subject,
-               Result* result) {
-  Judged judged(suite, problem, subject, 0);
-  std::vector<double> times;
-  times.push_back(judged.Solve(result->solver, problem.start).seconds);
+               const Solver& solve, Result* result) {
+  const Summary summary = solve(problem.targets[0], problem.start);
+  const Judged judged(suite, problem, subject, 0, summary);
   judged.AddTo(result);
   result->verdict = judged.verdict(kind);
   result->message = judged.Message(result->verdict);
   result->reached = judged.reached() ? 1 : 0;
   const bool found = result->verdict == Verdict::kSolved || Succeeded(*result, kind);
   result->branch = judged.branch(found);
-  if (result->verdict != Verdict::kUnavailable) {
-    for (int i = 1; i < suite.repetitions; ++i) {
-      times.push_back(judged.Solve(result->solver, problem.start).seconds);
-    }
+  std::vector<double> times = {summary.seconds};
+  for (int i = 1; i < suite.repetitions && result->verdict != Verdict::kUnavailable; ++i) {
+    times.push_back(solve(problem.targets[0], problem.start).seconds);
   }
   result->time = MedianOf(times);
 }
 
+/// Counts what becomes of the targets of a path.
 void FollowPath(const Suite& suite, const TargetBlock& block, const Problem& problem,
-                Subject* subject, Result* result) {
+                Subject* subject, const Solver& solve, Result* result) {
   VectorXd x = problem.start;
   int since = 1;  // targets since the last one that was reached
-  std::string first_trouble;
+  std::string trouble;
   for (size_t k = 0; k < problem.targets.size(); ++k) {
-    Judged judged(suite, problem, subject, k);
-    const Summary& summary = judged.Solve(result->solver, x);
+    const Summary summary = solve(problem.targets[k], x);
+    const Judged judged(suite, problem, subject, k, summary);
     judged.AddTo(result);
     result->branch = judged.branch(judged.reached());
     if (summary.status == SolveStatus::kUnavailable) {
@@ -185,11 +209,10 @@ void FollowPath(const Suite& suite, const TargetBlock& block, const Problem& pro
     }
     if (!judged.reached()) {
       ++since;
-      if (first_trouble.empty()) {
-        const Verdict verdict = judged.verdict(block.kind);
-        first_trouble = fmt::format("; first at target {}: {}: {}", k + 1, NameOf(verdict),
-                                    judged.Message(verdict));
-      }
+      const Verdict verdict = judged.verdict(block.kind);
+      if (!trouble.empty()) continue;
+      trouble = fmt::format("; first at target {}: {}: {}", k + 1, NameOf(verdict),
+                            judged.Message(verdict));
       continue;
     }
     ++result->reached;
@@ -201,7 +224,7 @@ void FollowPath(const Suite& suite, const TargetBlock& block, const Problem& pro
   const bool all = result->reached == result->targets;
   result->verdict = !all ? Verdict::kLost : result->jumps > 0 ? Verdict::kJumped : Verdict::kSolved;
   result->message = fmt::format("{} of {} targets reached, {} jumps{}", result->reached,
-                                result->targets, result->jumps, first_trouble);
+                                result->targets, result->jumps, trouble);
 }
 
 }  // namespace
@@ -218,10 +241,12 @@ Result SolveProblem(const Suite& suite, const ProblemId& id, const Problem& prob
   }
   const TargetBlock& block = suite.blocks[id.block];
   result.targets = static_cast<int>(problem.targets.size());
+  const Solver solve = solver.backend() ? SolverOf(*solver.backend(), suite, subject)
+                                        : FastPathFrom(problem.start, suite, subject);
   if (block.is_path()) {
-    FollowPath(suite, block, problem, subject, &result);
+    FollowPath(suite, block, problem, subject, solve, &result);
   } else {
-    SolvePose(suite, block.kind, problem, subject, &result);
+    SolvePose(suite, block.kind, problem, subject, solve, &result);
   }
   return result;
 }

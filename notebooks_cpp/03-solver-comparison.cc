@@ -78,6 +78,7 @@ int main(int argc, char** argv) {
     Subject subject(suite.mechanisms[id.mechanism]);
     const Problem problem = make(id, &subject);
     for (const Contestant& solver : AllContestants()) {
+      if (!solver.Takes(suite.blocks[id.block])) continue;
       const Result result = SolveProblem(suite, id, problem, &subject, solver);
       if (result.verdict != Verdict::kUnavailable) results.push_back(result);
     }

@@ -49,17 +49,25 @@ plot::LinePlot StepPlot(std::string title, std::string x_title, double x_min, do
   return plot;
 }
 
+/// The fast path takes paths only, and has no place among those who take everything.
+std::vector<Contestant> BackendsOf(const ComparisonReport& report) {
+  std::vector<Contestant> solvers = report.solvers;
+  std::erase_if(solvers, [](const Contestant& solver) { return !solver.backend(); });
+  return solvers;
+}
+
 Markup Profile(const ComparisonReport& report, const std::string& title, const std::string& ratio,
                const std::function<double(const Result&)>& measure) {
+  const std::vector<Contestant> solvers = BackendsOf(report);
   const PerformanceProfile profile = MakePerformanceProfile(CostsOf(
-      report.suite, report.results, report.solvers, [](const Result&) { return true; }, measure));
+      report.suite, report.results, solvers, [](const Result&) { return true; }, measure));
   // A whole decade, so that the axis ends at a tick.
   const double largest = std::clamp(profile.largest_ratio, 10.0, kLargestRatio);
   const double x_max = std::pow(10, std::ceil(std::log10(largest)));
   plot::LinePlot plot = StepPlot(title, ratio, 1, x_max);
   for (size_t s = 0; s < profile.curves.size(); ++s) {
     plot.series.push_back(
-        Steps(std::string(report.solvers[s].name()), profile.curves[s], 1, x_max, StyleOf(s)));
+        Steps(std::string(solvers[s].name()), profile.curves[s], 1, x_max, StyleOf(s)));
   }
   plot.description = title + ": share of the problems within a ratio of the best solver.";
   return html::Figure(plot::Draw(plot));

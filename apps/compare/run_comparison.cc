@@ -61,10 +61,10 @@ class Ledger {
     for (const ProblemId& problem : ProblemsOf(suite)) {
       Task task{problem, {}};
       for (const Contestant solver : solvers) {
+        if (!solver.Takes(suite.blocks[problem.block])) continue;
         if (!there.contains({problem, solver})) task.solvers.push_back(solver);
       }
       if (!task.solvers.empty()) open_.push_back(task);
-      all_ += solvers.size();
     }
   }
 
@@ -95,7 +95,6 @@ class Ledger {
   }
 
   size_t done() const { return results_.size(); }
-  size_t all() const { return all_; }
 
   std::vector<Result> Sorted() && {
     std::sort(results_.begin(), results_.end(), Before);
@@ -106,10 +105,17 @@ class Ledger {
   Journal* journal_;
   std::vector<Task> open_;
   std::vector<Result> results_;
-  size_t all_ = 0;
 };
 
 }  // namespace
+
+size_t RowsOf(const Suite& suite, const std::vector<Contestant>& solvers) {
+  size_t rows = 0;
+  for (const ProblemId& problem : ProblemsOf(suite)) {
+    for (const Contestant& solver : solvers) rows += solver.Takes(suite.blocks[problem.block]);
+  }
+  return rows;
+}
 
 Work ComparisonWork(const Suite& suite) {
   auto subjects = std::make_shared<std::map<int, Subject>>();
@@ -127,14 +133,14 @@ Work ComparisonWork(const Suite& suite) {
 
 std::vector<Result> RunComparison(const Suite& suite, const std::vector<Contestant>& solvers,
                                   const Spread& spread, Journal* journal,
-                                  const std::function<void(size_t done, size_t all)>& progress) {
+                                  const std::function<void(size_t done)>& progress) {
   Ledger ledger(suite, solvers, journal);
   Foreman foreman;
   foreman.answer = [&](size_t task, const std::string& line) {
     const std::optional<Result> result = ResultFromLine(line);
     if (!result) throw std::logic_error("a worker answered what is not a result: " + line);
     ledger.Add(task, *result);
-    progress(ledger.done(), ledger.all());
+    progress(ledger.done());
   };
   foreman.lost = [&](size_t task, const std::string& reason) { return ledger.Lost(task, reason); };
   spread(ledger.Tasks(), foreman);

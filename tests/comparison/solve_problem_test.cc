@@ -20,10 +20,13 @@ struct OneBlock {
     suite.stopping.optimality_tolerance = 1e-8;
     suite.repetitions = 1;
   }
-  Result Solve(uint64_t seed, Backend solver = Backend::kNullspace) {
+  Result Solve(uint64_t seed, Backend backend = Backend::kNullspace) {
+    return Solve(seed, Contestant(backend));
+  }
+  Result Solve(uint64_t seed, Contestant solver) {
     Subject subject(suite.mechanisms[0]);
     const Problem problem = MakeProblem(&subject, suite.blocks[0], seed);
-    return SolveProblem(suite, {}, problem, &subject, Contestant(solver));
+    return SolveProblem(suite, {}, problem, &subject, solver);
   }
   Suite suite;
 };
@@ -82,6 +85,15 @@ TEST(SolveProblem, FollowsAPathThroughADeadCentre) {
     EXPECT_EQ(result.jumps, 0);
     EXPECT_EQ(result.branch, Branch::kOwn);
   }
+}
+
+TEST(SolveProblem, FollowsAPathByTheFastPath) {
+  OneBlock one("stewart-gough", Block(TargetKind::kTracking));
+  const Result result = one.Solve(3, Contestant::FastPath());
+  EXPECT_EQ(result.verdict, Verdict::kSolved) << result.message;
+  EXPECT_EQ(result.reached, 20);
+  EXPECT_LE(result.e2, one.suite.stopping.constraint_tolerance);
+  EXPECT_GT(result.time, 0);
 }
 
 TEST(SolveProblem, CountsTheTargetsThatAreLostWhereIterationsAreTooFew) {
