@@ -22,7 +22,9 @@ namespace {
 // Configurations that are nearer than this are the same: far above what a tolerance on e1 leaves at
 // a pose that is nearly singular, far below the distance of two branches.
 constexpr double kSameConfiguration = 1e-3;
-constexpr double kJump = 10;  // of a path's own step
+constexpr double kJump = 10;    // of a path's own step
+constexpr int kGivenUp = 5;     // targets in a row that are not reached: the path is lost
+constexpr double kLong = 0.02;  // [s] of a solve whose time needs no repetition
 
 Verdict VerdictOf(SolveStatus status) {
   switch (status) {
@@ -185,7 +187,8 @@ void SolvePose(const Suite& suite, TargetKind kind, const Problem& problem, Subj
   const bool found = result->verdict == Verdict::kSolved || Succeeded(*result, kind);
   result->branch = judged.branch(found);
   std::vector<double> times = {summary.seconds};
-  for (int i = 1; i < suite.repetitions && result->verdict != Verdict::kUnavailable; ++i) {
+  while (static_cast<int>(times.size()) < suite.repetitions && summary.seconds < kLong &&
+         result->verdict != Verdict::kUnavailable) {
     times.push_back(solve(problem.targets[0], problem.start).seconds);
   }
   result->time = MedianOf(times);
@@ -197,7 +200,7 @@ void FollowPath(const Suite& suite, const TargetBlock& block, const Problem& pro
   VectorXd x = problem.start;
   int since = 1;  // targets since the last one that was reached
   std::string trouble;
-  for (size_t k = 0; k < problem.targets.size(); ++k) {
+  for (size_t k = 0; k < problem.targets.size() && since <= kGivenUp; ++k) {
     const Summary summary = solve(problem.targets[k], x);
     const Judged judged(suite, problem, subject, k, summary);
     judged.AddTo(result);
