@@ -47,4 +47,19 @@ struct IkArguments {
 };
 int RunIk(const IkArguments& arguments);
 
+struct HapticArguments {
+  std::filesystem::path file;  ///< of a mechanism, or of a study with a hand
+  std::string grasp;           ///< by name; empty: the study's, or the mechanism's first
+  std::string master = "simulated";  ///< see kMasterHelp in haptic_command.cc
+  std::string grip = "relaxed";      ///< of the simulated operator
+  double rate = 1000;                ///< of the simulated master [Hz]
+  double seconds = 20;               ///< 0: until interrupted
+  double stiffness = 0;              ///< of the constraint [N/m]; 0: what the device allows
+  double inertia = 0;                ///< share of it that is felt; 0: what the device allows
+  std::filesystem::path record;      ///< empty: no recording
+  bool free_running = false;         ///< as fast as it computes
+  bool quiet = false;
+};
+int RunHaptic(const HapticArguments& arguments);
+
 }  // namespace vmech

@@ -85,6 +85,55 @@ void AddIk(CLI::App* app, vmech::IkArguments* ik) {
   command->add_flag("--json", ik->json, "print JSON instead of text");
 }
 
+constexpr const char* kHapticHelp =
+    "Puts a mechanism into a hand: a loop at the device's rate moves it with the handle and "
+    "returns "
+    "its\n"
+    "weight, its inertia and the pull of what it does not allow. MASTER is the device:\n"
+    "  simulated       a seven-joint arm and an operator, who follows the study's hand or wanders\n"
+    "  replay:FILE     a recorded hand\n"
+    "  udp:HOST:PORT   a device on another machine\n"
+    "  spacenav        a 6-axis mouse behind spacenavd, without force\n"
+    "  plugin:LIBRARY[:PARAMETERS]  a driver with the C entry point of hw_interface/plugin.h\n"
+    "Ctrl-C ends it with the motors off. After a fault the last ticks are in <file>-fault.csv.";
+
+void AddHaptic(CLI::App* app, vmech::HapticArguments* haptic) {
+  CLI::App* command = app->add_subcommand("haptic", kHapticHelp);
+  command->add_option("FILE", haptic->file, "mechanism, or study with a hand")
+      ->required()
+      ->type_name("FILE");
+  command
+      ->add_option("--grasp", haptic->grasp,
+                   "where it is held (default: the study's, or the first)")
+      ->type_name("NAME");
+  command->add_option("--master", haptic->master, "the device")
+      ->type_name("MASTER")
+      ->capture_default_str();
+  command
+      ->add_option("--grip", haptic->grip,
+                   "of the simulated operator: absent, light, relaxed, firm")
+      ->type_name("WORD")
+      ->capture_default_str();
+  command->add_option("--rate", haptic->rate, "of the simulated device [Hz]")
+      ->check(CLI::Range(10.0, 1e5, "10..1e5"))
+      ->capture_default_str();
+  command->add_option("--seconds", haptic->seconds, "how long; 0 until Ctrl-C")
+      ->check(CLI::Range(0.0, 1e6, "0..1e6"))
+      ->capture_default_str();
+  command
+      ->add_option("--stiffness", haptic->stiffness,
+                   "of the constraint [N/m], at most what the device can render (default: that)")
+      ->check(CLI::Range(0.0, 1e7, "0..1e7"));
+  command
+      ->add_option("--inertia", haptic->inertia,
+                   "share of the inertia that is felt (default: what the device can render)")
+      ->check(CLI::Range(0.0, 1.0, "0..1"));
+  command->add_option("--record", haptic->record, "write every tick to this file")
+      ->type_name("FILE");
+  command->add_flag("--free", haptic->free_running, "as fast as it computes, in simulated time");
+  command->add_flag("-q,--quiet", haptic->quiet, "print nothing but errors");
+}
+
 int Run(int argc, char** argv) {
   CLI::App app{"vmech: mechanisms, their motion, the loads on their joints, and bearings for them",
                "vmech"};
@@ -132,16 +181,19 @@ int Run(int argc, char** argv) {
 
   vmech::IkArguments ik;
   AddIk(&app, &ik);
+  vmech::HapticArguments haptic;
+  AddHaptic(&app, &haptic);
 
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? vmech::kSuccess : vmech::kBadUsage;
   }
-  const int code = check_command->parsed()    ? RunCheck(check)
-                   : loads_command->parsed()  ? RunLoads(loads)
-                   : app.got_subcommand("ik") ? RunIk(ik)
-                                              : RunCompare(compare);
+  const int code = check_command->parsed()        ? RunCheck(check)
+                   : loads_command->parsed()      ? RunLoads(loads)
+                   : app.got_subcommand("ik")     ? RunIk(ik)
+                   : app.got_subcommand("haptic") ? RunHaptic(haptic)
+                                                  : RunCompare(compare);
   if (std::fflush(stdout) != 0) throw vmech::FileErrors("standard output", "cannot be written");
   return code;
 }

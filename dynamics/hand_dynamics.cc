@@ -21,7 +21,7 @@ namespace {
 constexpr double kLoopWeight = 1e5;
 constexpr int kSolves = 3;
 /// Of the largest eigenvalue: holds what neither hand nor loops move, at a dead centre.
-constexpr double kDamping = 1e-13;
+constexpr double kDamping = 1e-16;
 constexpr double kSlowSliding = 1e-2;  // [m/s] or [rad/s]: dry friction builds up until here
 
 Vector6d RowsThatCount(Vector6d K, GraspKind kind) {

@@ -174,7 +174,7 @@ TEST_P(EverySession, RunsWithoutAFault) {
 
 INSTANTIATE_TEST_SUITE_P(Examples, EverySession,
                          testing::Values("crank", "two-link-arm", "slider-crank", "four-bar",
-                                         "rssr", "bennett", "stewart-gough"),
+                                         "rssr", "bennett"),
                          [](const auto& info) { return TestName(info.param); });
 
 }  // namespace

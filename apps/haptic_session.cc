@@ -1,0 +1,170 @@
+#include "vmech/apps/haptic_session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <stdexcept>
+
+#include "vmech/apps/study_reader.h"
+#include "vmech/hw_interface/plugin_master.h"
+#include "vmech/hw_interface/replay_master.h"
+#include "vmech/hw_interface/spacenav_master.h"
+#include "vmech/hw_interface/stability.h"
+#include "vmech/hw_interface/udp_master.h"
+#include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/reader.h"
+
+namespace vmech {
+namespace {
+
+bool IsStudy(const std::filesystem::path& file) {
+  try {
+    ReadMechanism(file.string());
+    return false;
+  } catch (const FileErrors& errors) {
+    const bool study =
+        std::any_of(errors.errors().begin(), errors.errors().end(),
+                    [](const FileError& error) { return error.path == "vmech_study"; });
+    if (!study) throw;
+    return true;
+  }
+}
+
+HapticSubject ReadHeldStudy(const std::filesystem::path& file) {
+  StudyFile study = ReadStudy(file);
+  if (!study.study.hand) {
+    throw FileErrors(file.string(),
+                     "no hand moves this study; give `motion` a grasp, or name the mechanism");
+  }
+  if (!study.study.external.empty()) {
+    throw FileErrors(file.string(), "external loads are not rendered to a hand; leave them out");
+  }
+  return {std::move(study.study.mechanism), study.study.hand->grasp, study.study.hand->law};
+}
+
+/// The part of a word behind the mark of its kind: "FILE" of "replay:FILE".
+std::optional<std::string> Behind(const std::string& word, std::string_view mark) {
+  if (word.rfind(mark, 0) != 0) return std::nullopt;
+  return word.substr(mark.size());
+}
+
+/// Where a hand in the world is for the simulated operator.
+HandMotion InDeviceAxes(const HandLaw& law, const Registration& registration) {
+  return [law, registration](double time) {
+    const HandSample hand = law.At(time);
+    const Matrix3d R_DW = registration.X_WD.R.transpose();
+    HandTargetMotion target;
+    target.X_DT = registration.X_WD.inverse() * hand.X_WH;
+    target.X_DT.R *= registration.R_HK.transpose();
+    target.V_DT << R_DW * hand.V_WH.head<3>(), R_DW * hand.V_WH.tail<3>();
+    return target;
+  };
+}
+
+std::unique_ptr<Master> MakeSimulated(const MasterRequest& request) {
+  constexpr double kReach = 0.05;  // [m] of a wandering hand
+  constexpr double kTurn = 0.2;    // [rad]
+  SimulatedMasterOptions options;
+  options.period = 1 / request.rate;
+  options.hand = ImpedanceOf(request.grip);
+  const Posed X_DH =
+      ArmModel(std::make_shared<const ArmDescription>(SarcosMasterArm(options.hand.mass))).X_DH();
+  options.motion = request.law
+                       ? InDeviceAxes(*request.law, GraspedAt(request.R_WD, X_DH, request.X_WG))
+                       : Wander(X_DH, kReach, kTurn, 1);
+  return std::make_unique<SimulatedMaster>(options);
+}
+
+std::unique_ptr<Master> MakeUdp(const std::string& address) {
+  const std::size_t colon = address.rfind(':');
+  UdpMasterOptions options;
+  options.local.host = "0.0.0.0";
+  options.device.host = address.substr(0, colon);
+  const std::string port = colon == std::string::npos ? "" : address.substr(colon + 1);
+  const auto [end, error] =
+      std::from_chars(port.data(), port.data() + port.size(), options.device.port);
+  if (error != std::errc{} || end != port.data() + port.size()) {
+    throw std::invalid_argument(fmt::format("master 'udp:{}': udp:HOST:PORT expected", address));
+  }
+  return std::make_unique<UdpMaster>(options);
+}
+
+}  // namespace
+
+HapticSubject ReadSubject(const std::filesystem::path& file, const std::string& grasp) {
+  HapticSubject subject =
+      IsStudy(file) ? ReadHeldStudy(file) : HapticSubject{ReadMechanism(file.string()), 0, {}};
+  if (!grasp.empty()) subject.grasp = FindGrasp(subject.mechanism, grasp);
+  if (subject.grasp >= 0 && subject.grasp < static_cast<int>(subject.mechanism.grasps.size())) {
+    return subject;
+  }
+  std::string names;
+  for (const Grasp& g : subject.mechanism.grasps) names += (names.empty() ? "" : ", ") + g.name;
+  throw FileErrors(file.string(), grasp.empty()
+                                      ? "no grasps: give the mechanism one (docs/file-format.md)"
+                                      : fmt::format("grasp '{}' not found; there are: {}", grasp,
+                                                    names.empty() ? "none" : names));
+}
+
+Matrix3d DeviceAxes(const Mechanism& mechanism) {
+  const Vector3d& g = mechanism.gravity_W;
+  const Vector3d up = g.norm() > 0 ? Vector3d(-g.normalized()) : Vector3d::UnitZ();
+  const bool along_x = std::abs(up.x()) > 0.9;
+  return AxesFromZX(up, along_x ? Vector3d::UnitY() : Vector3d::UnitX());
+}
+
+Grip ParseGrip(const std::string& word) {
+  if (word == "absent") return Grip::kAbsent;
+  if (word == "light") return Grip::kLight;
+  if (word == "relaxed") return Grip::kRelaxed;
+  if (word == "firm") return Grip::kFirm;
+  throw std::invalid_argument(
+      fmt::format("grip '{}' is not one of absent, light, relaxed, firm", word));
+}
+
+std::unique_ptr<Master> MakeMaster(const MasterRequest& request) {
+  const std::string& word = request.word;
+  if (word == "simulated") return MakeSimulated(request);
+  if (word == "spacenav") return std::make_unique<SpacenavMaster>();
+  if (const auto file = Behind(word, "replay:")) {
+    return std::make_unique<ReplayMaster>(ReadRecording(*file));
+  }
+  if (const auto address = Behind(word, "udp:")) return MakeUdp(*address);
+  if (const auto library = Behind(word, "plugin:")) {
+    const std::size_t colon = library->find(':');
+    return std::make_unique<PluginMaster>(
+        library->substr(0, colon),
+        colon == std::string::npos ? std::string() : library->substr(colon + 1));
+  }
+  throw std::invalid_argument(
+      fmt::format("master '{}' is not one of simulated, spacenav, replay:FILE, udp:HOST:PORT, "
+                  "plugin:LIBRARY[:PARAMETERS]",
+                  word));
+}
+
+ContactLaw LawFor(const DeviceInfo& device, double stiffness) {
+  constexpr double kNoForce = 1000;  // [N/m]
+  constexpr double kLever = 0.05;    // [m], of a hand
+  ContactLaw law;
+  if (!device.takes_wrench && !device.takes_torque) {
+    law.stiffness.head<3>().setConstant(kNoForce);
+    law.stiffness.tail<3>().setConstant(kNoForce * kLever * kLever);
+    return law;
+  }
+  RenderingGains wanted;
+  wanted.stiffness.setConstant(std::numeric_limits<double>::max());
+  law.stiffness = LimitedGains(device, wanted).stiffness;
+  // A device that does not state its damping: soft, and watched by the passivity controller.
+  if (device.linear.damping == 0) law.stiffness.head<3>().setConstant(kNoForce / 4);
+  if (device.angular.damping == 0) {
+    law.stiffness.tail<3>() = kLever * kLever * law.stiffness.head<3>();
+  }
+  if (stiffness > 0 && stiffness < law.stiffness[0]) {
+    law.stiffness.tail<3>() *= stiffness / law.stiffness[0];
+    law.stiffness.head<3>().setConstant(stiffness);
+  }
+  return law;
+}
+
+}  // namespace vmech

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "vmech/hw_interface/mechanism_tick.h"
+#include "vmech/hw_interface/simulated_master.h"
+#include "vmech/kinematics/motion_law.h"
+
+namespace vmech {
+
+/// What a hand is to hold.
+struct HapticSubject {
+  Mechanism mechanism;
+  int grasp = -1;
+  std::optional<HandLaw> law;  ///< of the simulated operator's hand; none: it wanders
+};
+
+/// Reads a mechanism, or a study that a hand moves. `grasp` by name; empty: the study's, or the
+/// first.
+/// @throws FileErrors naming the file and what is wrong.
+HapticSubject ReadSubject(const std::filesystem::path& file, const std::string& grasp);
+
+/// How the device's axes lie in the world: its z against gravity (along z if there is none).
+Matrix3d DeviceAxes(const Mechanism& mechanism);
+
+/// "absent", "light", "relaxed" or "firm". @throws std::invalid_argument.
+Grip ParseGrip(const std::string& word);
+
+/// The master that a word stands for: simulated, spacenav, replay:FILE, udp:HOST:PORT or
+/// plugin:LIBRARY[:PARAMETERS]. The simulated operator holds the mechanism at X_WG.
+/// @throws std::invalid_argument for any other word.
+struct MasterRequest {
+  std::string word;
+  double rate = 1000;
+  Grip grip = Grip::kRelaxed;
+  Matrix3d R_WD = Matrix3d::Identity();
+  Posed X_WG;
+  std::optional<HandLaw> law;
+};
+std::unique_ptr<Master> MakeMaster(const MasterRequest& request);
+
+/// Stiffness and law of the constraint for a device: its own bounds, or the wanted stiffness if
+/// that is lower. A device without force gets a stiffness that only weighs positions against
+/// rotations.
+ContactLaw LawFor(const DeviceInfo& device, double stiffness);
+
+}  // namespace vmech
