@@ -48,8 +48,8 @@ struct IkArguments {
 int RunIk(const IkArguments& arguments);
 
 struct HapticArguments {
-  std::filesystem::path file;  ///< of a mechanism, or of a study with a hand
-  std::string grasp;           ///< by name; empty: the study's, or the mechanism's first
+  std::filesystem::path file;        ///< of a mechanism, or of a study with a hand
+  std::string grasp;                 ///< by name; empty: the study's, or the mechanism's first
   std::string master = "simulated";  ///< see kMasterHelp in haptic_command.cc
   std::string grip = "relaxed";      ///< of the simulated operator
   double rate = 1000;                ///< of the simulated master [Hz]
