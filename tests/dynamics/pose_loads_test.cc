@@ -40,12 +40,6 @@ std::vector<DrivenExample> ExamplesWithoutIdleFreedoms() {
 INSTANTIATE_TEST_SUITE_P(Examples, EveryPose, testing::ValuesIn(ExamplesWithoutIdleFreedoms()),
                          [](const auto& info) { return TestName(info.param.name); });
 
-TEST(Allocations, AreCounted) {
-  const long before = allocations;
-  const VectorXd x = VectorXd::Zero(100);
-  EXPECT_GT(allocations - before, 0) << x.size();
-}
-
 }  // namespace
 }  // namespace vmech
 #endif

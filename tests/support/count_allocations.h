@@ -1,7 +1,10 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <atomic>
 #include <cstddef>
+#include <cstdlib>
 
 // Counts every allocation of a program, Eigen's own included, by standing in for malloc. For one
 // source file of a test program, and none of a build with a sanitizer, which brings an allocator of
@@ -21,4 +24,12 @@ void* malloc(std::size_t size) {
   ++vmech::allocations;
   return __libc_malloc(size);
 }
+}
+
+// Without this a program whose allocations are not counted would pass for one without any.
+TEST(Allocations, AreCounted) {
+  const long before = vmech::allocations;
+  void* volatile block = malloc(100);
+  EXPECT_EQ(vmech::allocations - before, 1);
+  free(block);
 }
