@@ -198,7 +198,7 @@ class ModeSearch {
   double ErrorAt(const VectorXd& q) {
     at_q_.Evaluate(problem_, q);
     if (!at_q_.r.allFinite()) return std::numeric_limits<double>::infinity();
-    return at_q_.r.size() > 0 ? at_q_.r.cwiseAbs().maxCoeff() : 0;
+    return at_q_.r.lpNorm<Eigen::Infinity>();
   }
 
   /// Newton's method, of the shortest steps where equations are redundant or freedoms are left.

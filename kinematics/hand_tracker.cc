@@ -31,10 +31,6 @@ constexpr int kInverseIterations = 4;
 constexpr int kClosingSteps = 3;
 constexpr double kClosingWeight = 1e3;
 
-double MaxAbs(const VectorXd& v) noexcept {
-  return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0.0;
-}
-
 /// Gaussian elimination with pivoting in place: sign of the determinant, its logarithm in *log.
 int EliminateForSign(MatrixXd& M, double* log) noexcept {
   const Eigen::Index n = M.rows();
@@ -138,11 +134,11 @@ HandTracker::HandTracker(const KinematicTree& tree, const GraspFrame& grasp, con
   closing_options_.weight = closing_options_.max_weight = kClosingWeight;
   problem_.SetTarget(problem_.GraspPose(q));
   at_trial_.Evaluate(problem_, q);
-  if (!(MaxAbs(at_trial_.c) <= options.closure_tolerance)) {
+  if (!(at_trial_.c.lpNorm<Eigen::Infinity>() <= options.closure_tolerance)) {
     throw std::invalid_argument(
         fmt::format("HandTracker: the loops are open by {:.3g} of the characteristic length at the "
                     "start; close them first (Assemble)",
-                    MaxAbs(at_trial_.c)));
+                    at_trial_.c.lpNorm<Eigen::Infinity>()));
   }
   StackJacobians();
   TakeReference();
@@ -170,7 +166,7 @@ HandTracker::Progress HandTracker::TakeSteps() noexcept {
   bool slow = false;
   for (int i = 0; i < options_.steps; ++i) {
     if (!TakeStep(slow)) return Progress::kNone;
-    const double size = MaxAbs(workspace_.step.dx);
+    const double size = workspace_.step.dx.lpNorm<Eigen::Infinity>();
     if (size <= options_.step_tolerance) return Progress::kArrived;
     slow = slow || (i > 0 && size > kSlow * last_step);
     if (i == 0) first_error = workspace_.step.at_x.r.squaredNorm();
@@ -206,7 +202,8 @@ HandTracker::Progress HandTracker::Rescue() noexcept {
 void HandTracker::Close() noexcept {
   for (int i = 0;; ++i) {
     at_trial_.Evaluate(problem_, trial_);
-    if (i == kClosingSteps || MaxAbs(at_trial_.c) <= options_.closure_tolerance) return;
+    if (i == kClosingSteps || at_trial_.c.lpNorm<Eigen::Infinity>() <= options_.closure_tolerance)
+      return;
     closing_workspace_.multipliers.setZero();
     if (!Step(closing_, closing_options_, &trial_, &closing_workspace_).ok) return;
   }
@@ -220,7 +217,7 @@ TrackStatus HandTracker::Judge() noexcept {
   determinant_ = BranchDeterminant();
   if (std::abs(determinant_) < kDeadZone) return TrackStatus::kDeadCentre;
   if (determinant_ < 0) return TrackStatus::kJump;
-  const bool closed = MaxAbs(at_trial_.c) <= options_.closure_tolerance;
+  const bool closed = at_trial_.c.lpNorm<Eigen::Infinity>() <= options_.closure_tolerance;
   return closed ? TrackStatus::kFollowed : TrackStatus::kLost;
 }
 
@@ -248,14 +245,14 @@ bool HandTracker::StandBeside() noexcept {
   step_ = VectorXd::LinSpaced(step_.size(), 1, 2);
   for (int i = 0; i < kInverseIterations; ++i) {
     normal_.solveInPlace(step_);
-    step_ *= kBeside / MaxAbs(step_);
+    step_ *= kBeside / step_.lpNorm<Eigen::Infinity>();
   }
   for (int side = 0; side < 2; ++side, step_ = -step_) {
     problem_.Plus(dead_zone_, step_, &trial_);
     Close();
     StackJacobians();
     determinant_ = BranchDeterminant();
-    const bool closed = MaxAbs(at_trial_.c) <= options_.closure_tolerance;
+    const bool closed = at_trial_.c.lpNorm<Eigen::Infinity>() <= options_.closure_tolerance;
     if (closed && determinant_ > 0 && WithinLimits()) return true;
   }
   return false;
@@ -279,7 +276,7 @@ TrackStatus HandTracker::Accept(Progress progress) noexcept {
 
 void HandTracker::MoveToTrial() noexcept {
   q_ = trial_;
-  summary_.worst_closure = std::max(summary_.worst_closure, MaxAbs(at_trial_.c));
+  summary_.worst_closure = std::max(summary_.worst_closure, at_trial_.c.lpNorm<Eigen::Infinity>());
   const double behind = (q_ - q_reference_).cwiseAbs().maxCoeff();
   const bool near = determinant_ * std::exp(log_reference_ - log_best_) < kReferenceNear;
   if (behind > (near ? kReferenceRange : kReferenceBehind)) TakeReference();

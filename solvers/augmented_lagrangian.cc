@@ -13,10 +13,6 @@ constexpr double kWeightGrowth = 3;
 // Rounds at the largest weight without progress after which nothing more is expected.
 constexpr int kMaxFutileRounds = 5;
 
-double MaxAbs(const VectorXd& v) noexcept {
-  return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0.0;
-}
-
 }  // namespace
 
 void AugmentedLagrangianOptions::Validate() const {
@@ -64,7 +60,7 @@ FastOutcome Solve(ConstrainedLeastSquares& problem, const AugmentedLagrangianOpt
         step.Minimize(problem, lambda, workspace->multipliers, options.damping, options.max_step,
                       target, rule.max_iterations - outcome.iterations, x);
     outcome.iterations += descent.iterations;
-    outcome.constraint_norm = MaxAbs(step.at_x.c);
+    outcome.constraint_norm = step.at_x.c.lpNorm<Eigen::Infinity>();
     if (!descent.ok) return outcome;
     // mu += lambda^2 c: what was the gradient of phi is now that of the Lagrangian
     workspace->multipliers += lambda * lambda * step.at_x.c;

@@ -73,7 +73,7 @@ class CeresSolver {
       if (Done() || Polish()) return {SolveStatus::kConverged, "", iterations_};
       if (Spent()) return {SolveStatus::kIterationLimit, "iterations are spent", iterations_};
       mu_ += weight_ * weight_ * at_x_.c;
-      const double error = at_x_.c.size() > 0 ? at_x_.c.cwiseAbs().maxCoeff() : 0;
+      const double error = at_x_.c.lpNorm<Eigen::Infinity>();
       const bool slow = error > kSlow * last_error;
       if (slow && weight_ >= options_.max_weight) ++futile;
       if (slow) weight_ = std::min(kWeightGrowth * weight_, options_.max_weight);

@@ -126,10 +126,6 @@ double BoundViolation(const std::vector<Bound>& bounds, const VectorXd& x) {
   return worst;
 }
 
-double MaxAbs(const VectorXd& v) {
-  return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0.0;
-}
-
 double InfeasibilitySlope(const Linearization& at_x, const std::vector<ActiveBound>& active) {
   const double error = at_x.c.norm();
   if (error == 0) return 1;
@@ -169,7 +165,7 @@ Optimality MeasureOptimality(const std::vector<Bound>& bounds, const VectorXd& x
                              const Linearization& at_x, double rank_tolerance) {
   Optimality result;
   result.objective = 0.5 * at_x.r.squaredNorm();
-  result.constraint_norm = MaxAbs(at_x.c);
+  result.constraint_norm = at_x.c.lpNorm<Eigen::Infinity>();
   result.bound_violation = BoundViolation(bounds, x);
 
   const std::vector<ActiveBound> active = NearBounds(bounds, x);
@@ -177,12 +173,12 @@ Optimality MeasureOptimality(const std::vector<Bound>& bounds, const VectorXd& x
   const SignedMultipliers best(gradient, at_x.C, active, RankTolerance(at_x, rank_tolerance));
   result.multipliers = best.mu;
   result.bound_multipliers = VectorXd::Zero(static_cast<int>(bounds.size()));
-  double error = MaxAbs(best.residual);
+  double error = best.residual.lpNorm<Eigen::Infinity>();
   for (size_t k = 0; k < active.size(); ++k) {
     result.bound_multipliers[active[k].index] += active[k].sign * best.y[k];
     error = std::max(error, best.y[k] * active[k].distance);
   }
-  result.kkt_error = error / std::max(1.0, MaxAbs(gradient));
+  result.kkt_error = error / std::max(1.0, gradient.lpNorm<Eigen::Infinity>());
   result.infeasibility_slope = InfeasibilitySlope(at_x, active);
   return result;
 }

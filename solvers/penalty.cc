@@ -39,7 +39,7 @@ FastOutcome Solve(ConstrainedLeastSquares& problem, const PenaltyOptions& option
       options.stopping.optimality_tolerance, options.stopping.max_iterations, x);
   FastOutcome outcome;
   outcome.iterations = descent.iterations;
-  outcome.constraint_norm = step.at_x.c.size() > 0 ? step.at_x.c.cwiseAbs().maxCoeff() : 0.0;
+  outcome.constraint_norm = step.at_x.c.lpNorm<Eigen::Infinity>();
   outcome.bias_bound = step.at_x.c.norm();  // lambda^2 c is the multiplier estimate
   outcome.claim = descent.stationary ? SolveStatus::kBiased
                   : descent.ok       ? SolveStatus::kIterationLimit
