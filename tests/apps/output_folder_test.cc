@@ -1,10 +1,10 @@
 #include "vmech/apps/output_folder.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <fstream>
 
+#include "support/temp_folder.h"
 #include "vmech/mechanisms/document.h"
 
 namespace vmech {
@@ -14,9 +14,6 @@ namespace fs = std::filesystem;
 
 class OutputFolderTest : public testing::Test {
  protected:
-  OutputFolderTest() { fs::create_directories(base_); }
-  ~OutputFolderTest() override { fs::remove_all(base_); }
-
   static std::string Read(const fs::path& path) {
     std::ifstream file(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
@@ -25,9 +22,8 @@ class OutputFolderTest : public testing::Test {
     return static_cast<int>(std::distance(fs::directory_iterator(folder), {}));
   }
 
-  const fs::path base_ = fs::path(testing::TempDir()) /
-                         ("vmech-output-" + std::to_string(getpid()) + "-" +
-                          testing::UnitTest::GetInstance()->current_test_info()->name());
+  const TempFolder temp_;
+  const fs::path base_ = temp_.path();
 };
 
 TEST_F(OutputFolderTest, FilesAppearTogetherAtCommit) {

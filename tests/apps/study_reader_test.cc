@@ -7,6 +7,8 @@
 #include <numbers>
 #include <ostream>
 
+#include "support/temp_folder.h"
+
 namespace vmech {
 namespace {
 
@@ -36,16 +38,11 @@ std::string Replaced(std::string text, const std::string& passage, const std::st
 class StudyReader : public testing::Test {
  protected:
   StudyReader() {
-    folder_ = std::filesystem::path(testing::TempDir()) /
-              ("vmech-" + std::to_string(testing::UnitTest::GetInstance()->random_seed()) + "-" +
-               testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::create_directories(folder_);
     std::filesystem::copy_file(std::filesystem::path(VMECH_EXAMPLES) / "slider-crank.yaml",
                                folder_ / "slider-crank.yaml",
                                std::filesystem::copy_options::overwrite_existing);
     Write("gas.csv", "main,fx\n0,-100\n180,-50\n360,-100\n");
   }
-  ~StudyReader() override { std::filesystem::remove_all(folder_); }
 
   void Write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ / name) << text;
@@ -65,14 +62,14 @@ class StudyReader : public testing::Test {
       Parse(text);
     } catch (const FileErrors& errors) {
       std::string what = errors.what();
-      const std::string folder = folder_.string() + "/";
+      const std::string folder = folder_.path().string() + "/";
       for (size_t at; (at = what.find(folder)) != what.npos;) what.erase(at, folder.size());
       return what;
     }
     return "";
   }
 
-  std::filesystem::path folder_;
+  TempFolder folder_;
 };
 
 TEST_F(StudyReader, ReadsTheMotionOfAMotor) {

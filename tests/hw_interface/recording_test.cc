@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "support/temp_folder.h"
 #include "vmech/hw_interface/replay_master.h"
 
 namespace vmech {
@@ -11,9 +12,6 @@ namespace {
 
 class RecordingFile : public testing::Test {
  protected:
-  RecordingFile() : file_(testing::TempDir() + "recording_test.csv") {}
-  ~RecordingFile() override { std::filesystem::remove(file_); }
-
   static Recording Sample() {
     Recording recording{"a device, with a comma", 1e-3, {"closure", "bearing pin"}, {}};
     for (int k = 0; k < 3; ++k) {
@@ -43,7 +41,8 @@ class RecordingFile : public testing::Test {
     return "";
   }
 
-  std::filesystem::path file_;
+  TempFolder folder_;
+  std::filesystem::path file_ = folder_ / "recording.csv";
 };
 
 TEST_F(RecordingFile, ComesBackAsItWas) {

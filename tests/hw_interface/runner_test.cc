@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "hw_interface/point_master.h"
+#include "support/temp_folder.h"
 #include "vmech/hw_interface/simulated_master.h"
 
 namespace vmech {
@@ -127,7 +128,8 @@ TEST(Runner, KeepsAndWritesTheLastTicksAfterAFault) {
   SpringTick tick(std::nan(""));
   RunnerOptions options = Quick(1);
   options.keep = 50;
-  options.post_mortem = testing::TempDir() + "runner_test_post_mortem.csv";
+  const TempFolder folder;
+  options.post_mortem = folder / "post_mortem.csv";
   FreeRunningClock clock;
   const RunSummary summary = Runner(options, &master, &tick, &clock).Run();
   EXPECT_EQ(summary.status, RunStatus::kFault);
@@ -137,7 +139,6 @@ TEST(Runner, KeepsAndWritesTheLastTicksAfterAFault) {
   const Recording last = ReadRecording(summary.post_mortem);
   EXPECT_EQ(last.ticks.back().off, ForceOff::kNonFinite);
   EXPECT_EQ(last.channels, std::vector<std::string>{"stretch"});
-  std::filesystem::remove(options.post_mortem);
 }
 
 TEST(Runner, StopsWhenTheTickFails) {

@@ -5,6 +5,8 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "support/temp_folder.h"
+
 namespace vmech {
 namespace {
 
@@ -13,8 +15,7 @@ constexpr std::int64_t kTick = 1'000'000;  // [ns]
 /// Speaks as spacenavd does to a client of its first protocol.
 class FakeDaemon : public testing::Test {
  protected:
-  FakeDaemon() : path_(testing::TempDir() + "spnav" + std::to_string(getpid()) + ".sock") {
-    unlink(path_.c_str());
+  FakeDaemon() {
     listener_ = socket(AF_UNIX, SOCK_STREAM, 0);
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
@@ -30,7 +31,6 @@ class FakeDaemon : public testing::Test {
   ~FakeDaemon() override {
     HangUp();
     close(listener_);
-    unlink(path_.c_str());
   }
   void HangUp() {
     if (client_ >= 0) close(client_);
@@ -47,7 +47,8 @@ class FakeDaemon : public testing::Test {
     return state;
   }
 
-  std::string path_;
+  TempFolder folder_;
+  std::string path_ = folder_ / "spnav.sock";
   int listener_ = -1, client_ = -1;
   std::unique_ptr<SpacenavMaster> master_;
 };
@@ -94,7 +95,7 @@ TEST_F(FakeDaemon, HandleStopsWhenTheDaemonGoes) {
 
 TEST(SpacenavMaster, SaysWhichDaemonIsMissing) {
   SpacenavOptions options;
-  options.socket = testing::TempDir() + "nobody.sock";
+  options.socket = TempFolder() / "nobody.sock";
   SpacenavMaster master(options);
   EXPECT_THROW(master.Configure(), std::runtime_error);
 }

@@ -10,6 +10,7 @@
 
 #include "highlight.h"
 #include "notebook.h"
+#include "support/temp_folder.h"
 
 namespace vmech {
 namespace {
@@ -64,7 +65,8 @@ std::string FileText(const std::string& name) {
 }
 
 TEST(Notebook, WhatAChapterWritesIsReadBackWithItsLine) {
-  std::string file = std::filesystem::path(testing::TempDir()) / "notebook_test.results";
+  const TempFolder folder;
+  std::string file = folder / "chapter.results";
   std::string program = "chapter";
   char* arguments[] = {program.data(), file.data()};
   int line = 0;

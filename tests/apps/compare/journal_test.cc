@@ -7,6 +7,7 @@
 #include <limits>
 #include <sstream>
 
+#include "support/temp_folder.h"
 #include "vmech/apps/compare/result_text.h"
 #include "vmech/mechanisms/document.h"
 
@@ -35,14 +36,6 @@ Result ResultOf(int index) {
 
 class JournalFile : public testing::Test {
  protected:
-  JournalFile()
-      : folder_(std::filesystem::path(testing::TempDir()) /
-                (std::string("vmech-journal-") +
-                 testing::UnitTest::GetInstance()->current_test_info()->name())) {
-    std::filesystem::remove_all(folder_);
-  }
-  ~JournalFile() override { std::filesystem::remove_all(folder_); }
-
   std::string Text() const {
     std::ostringstream text;
     text << std::ifstream(folder_ / Journal::kFileName).rdbuf();
@@ -53,24 +46,24 @@ class JournalFile : public testing::Test {
   }
   std::string Refusal(const Journal::Origin& origin) const {
     try {
-      Journal journal(folder_, origin, SmallSuite());
+      Journal journal(folder_.path(), origin, SmallSuite());
     } catch (const FileErrors& error) {
       return error.what();
     }
     return "";
   }
 
-  std::filesystem::path folder_;
+  TempFolder folder_;
 };
 
 TEST_F(JournalFile, GivesBackWhatWasPutIn) {
   {
-    Journal journal(folder_, kOrigin, SmallSuite());
+    Journal journal(folder_.path(), kOrigin, SmallSuite());
     EXPECT_TRUE(journal.found().empty());
     journal.Append(ResultOf(0));
     journal.Append(ResultOf(3));
   }
-  const Journal journal(folder_, kOrigin, SmallSuite());
+  const Journal journal(folder_.path(), kOrigin, SmallSuite());
   ASSERT_EQ(journal.found().size(), 2u);
   const Result& back = journal.found()[1];
   EXPECT_EQ(back.problem, (ProblemId{0, 0, 3}));
@@ -82,14 +75,14 @@ TEST_F(JournalFile, GivesBackWhatWasPutIn) {
 
 TEST_F(JournalFile, PassesOverALineThatWasCutOffWhereverThatWas) {
   {
-    Journal journal(folder_, kOrigin, SmallSuite());
+    Journal journal(folder_.path(), kOrigin, SmallSuite());
     journal.Append(ResultOf(0));
   }
   const std::string whole = Text(), line = ToLine(ResultOf(1)) + "\n";
   for (size_t length = 0; length < line.size(); length += 7) {
     std::ofstream(folder_ / Journal::kFileName) << whole;
     Append(line.substr(0, length));
-    Journal journal(folder_, kOrigin, SmallSuite());
+    Journal journal(folder_.path(), kOrigin, SmallSuite());
     EXPECT_EQ(journal.found().size(), 1u);
     journal.Append(ResultOf(1));
     EXPECT_EQ(Text(), whole + line);
@@ -97,15 +90,15 @@ TEST_F(JournalFile, PassesOverALineThatWasCutOffWhereverThatWas) {
 }
 
 TEST_F(JournalFile, BeginsAnewWhereEvenTheFirstLineWasCutOff) {
-  { const Journal journal(folder_, kOrigin, SmallSuite()); }
+  { const Journal journal(folder_.path(), kOrigin, SmallSuite()); }
   const std::string header = Text();
   std::ofstream(folder_ / Journal::kFileName) << header.substr(0, 9);
-  { const Journal journal(folder_, kOrigin, SmallSuite()); }
+  { const Journal journal(folder_.path(), kOrigin, SmallSuite()); }
   EXPECT_EQ(Text(), header);
 }
 
 TEST_F(JournalFile, RefusesAnotherSuiteAndAnotherBuild) {
-  { const Journal journal(folder_, kOrigin, SmallSuite()); }
+  { const Journal journal(folder_.path(), kOrigin, SmallSuite()); }
   EXPECT_NE(Refusal({18, 4, "1.2.3"}).find("rows of another suite"), std::string::npos);
   EXPECT_NE(Refusal({17, 5, "1.2.3"}).find("another build of vmech"), std::string::npos);
   EXPECT_NE(Refusal({17, 4, "1.2.4"}).find("another build of vmech, version 1.2.3"),
@@ -114,7 +107,7 @@ TEST_F(JournalFile, RefusesAnotherSuiteAndAnotherBuild) {
 }
 
 TEST_F(JournalFile, RefusesWhatItCannotHaveWritten) {
-  { const Journal journal(folder_, kOrigin, SmallSuite()); }
+  { const Journal journal(folder_.path(), kOrigin, SmallSuite()); }
   Append(ToLine(ResultOf(5)) + "\n");  // the block has five problems, from 0
   EXPECT_NE(Refusal(kOrigin).find("line 2 is damaged"), std::string::npos);
   std::ofstream(folder_ / Journal::kFileName) << "something else\n";
@@ -122,7 +115,7 @@ TEST_F(JournalFile, RefusesWhatItCannotHaveWritten) {
 }
 
 TEST_F(JournalFile, LetsOnlyOneWrite) {
-  const Journal first(folder_, kOrigin, SmallSuite());
+  const Journal first(folder_.path(), kOrigin, SmallSuite());
   EXPECT_NE(Refusal(kOrigin).find("another vmech is writing here"), std::string::npos);
 }
 
