@@ -182,15 +182,16 @@ TEST(Runner, RecordsEveryTick) {
   EXPECT_THROW(endless.Validate(), std::invalid_argument);
 }
 
-TEST(Runner, WallClockKeepsThePeriodOnAverage) {
+TEST(Runner, EverySlotOfTheGridIsTickedOrCountedAsSkipped) {
   PointMaster master(PointOptions{});
   master.Configure();
   SpringTick tick(100);
   WallClock clock;
   const std::int64_t start = clock.Now();
   const RunSummary summary = Runner(Quick(0.1), &master, &tick, &clock).Run();
-  EXPECT_GE(clock.Now() - start, 99'000'000);  // never faster than the grid
-  EXPECT_EQ(summary.ticks + summary.skipped, 100u);
+  const std::uint64_t slots = summary.ticks + summary.skipped;
+  EXPECT_GE(slots, 100u);  // more where the machine overslept the end
+  EXPECT_LE((slots - 1) * 1'000'000, clock.Now() - start);
 }
 
 TEST(Runner, SimulatedArmFollowsAWeakSpringInJointTorques) {
