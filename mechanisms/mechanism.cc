@@ -1,5 +1,6 @@
 #include "vmech/mechanisms/mechanism.h"
 
+#include <cmath>
 #include <stdexcept>
 
 namespace vmech {
@@ -49,17 +50,20 @@ int FindGrasp(const Mechanism& mechanism, std::string_view name) {
 
 Matrix3d AxesFromZX(const Vector3d& z, const Vector3d& x) {
   constexpr double kParallel =
-      1e-6;  // sine of the angle below which x says nothing about the frame
+      1e-6;                         // sine of the angle below which x says nothing about the frame
+  constexpr double kExact = 4e-15;  // defect of axes that cannot be made more square
   if (!(z.norm() > 0)) throw std::invalid_argument("the z axis has no length");
   const Vector3d z_unit = z.normalized();
   const Vector3d x_across = x - z_unit * z_unit.dot(x);
   if (!(x_across.norm() > kParallel * x.norm())) {
     throw std::invalid_argument("the x axis is parallel to the z axis, or has no length");
   }
+  const bool orthonormal = std::abs(z.squaredNorm() - 1) < kExact &&
+                           std::abs(x.squaredNorm() - 1) < kExact && std::abs(z.dot(x)) < kExact;
   Matrix3d R;
-  R.col(0) = x_across.normalized();
-  R.col(1) = z_unit.cross(R.col(0));
-  R.col(2) = z_unit;
+  R.col(2) = orthonormal ? z : z_unit;
+  R.col(0) = orthonormal ? x : (x_across - z_unit * z_unit.dot(x_across)).normalized();
+  R.col(1) = R.col(2).cross(R.col(0));
   return R;
 }
 

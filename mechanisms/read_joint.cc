@@ -2,40 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
 #include <numbers>
 
+#include "vmech/mechanisms/freedoms.h"
+
 namespace vmech {
 namespace {
-
-/// Which motions are free, in the order x, y, z, about x, about y, about z, and the freedoms of
-/// each joint type: true for a rotation.
-struct Freedoms {
-  std::array<bool, 6> free;
-  std::vector<bool> rotates;
-};
-
-const Freedoms& FreedomsOfType(JointType type) {
-  static const Freedoms kTable[] = {
-      {{0, 0, 0, 0, 0, 1}, {true}},                // revolute
-      {{0, 0, 1, 0, 0, 0}, {false}},               // prismatic
-      {{0, 0, 1, 0, 0, 1}, {false, true}},         // cylindrical
-      {{0, 0, 1, 0, 0, 1}, {true}},                // screw
-      {{0, 0, 0, 1, 1, 0}, {true, true}},          // universal
-      {{0, 0, 0, 1, 1, 1}, {true, true, true}},    // spherical
-      {{1, 1, 0, 0, 0, 1}, {false, false, true}},  // planar
-      {{0, 0, 0, 0, 0, 0}, {}},                    // weld
-  };
-  return kTable[static_cast<int>(type)];
-}
-
-bool Rotates(JointType type) {
-  for (const bool rotation : FreedomsOfType(type).rotates) {
-    if (rotation) return true;
-  }
-  return false;
-}
 
 /// A value per freedom, in SI: `translation` and `rotation` are the unit of each kind. Empty if
 /// the node is absent or wrong.
@@ -64,11 +37,12 @@ std::vector<double> ReadSphericalStart(const Node& node, const Units& units) {
   if (node.kind() == Node::Kind::kList && node.List().size() == 4) {
     const std::vector<double> wxyz = node.Numbers(4);
     Eigen::Vector4d q(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
-    if (std::abs(q.norm() - 1) > 1e-3) {
+    constexpr double kRounded = 1e-3, kExact = 4e-15;  // off a length of 1
+    if (std::abs(q.norm() - 1) > kRounded) {
       node.Error(fmt::format("a quaternion w, x, y, z has length 1, not {:.6g}", q.norm()));
       return ZeroCoordinates(JointType::kSpherical);
     }
-    q.normalize();
+    if (std::abs(q.norm() - 1) > kExact) q.normalize();
     return {q[0], q[1], q[2], q[3]};
   }
   const Vector3d rotation = units.angle * node.Vector3();
@@ -157,7 +131,7 @@ void ReadLoadFriction(const Node& node, const Units& units, Joint* joint) {
   if (!node || !node.CheckKeys({"coefficient"}, {"radius"})) return;
   joint->load_friction.coefficient = node["coefficient"].NonNegative();
   const Node radius = node["radius"];
-  joint->load_friction.radius = units.length * radius.Positive();
+  if (radius) joint->load_friction.radius = units.length * radius.Positive();
   if (Rotates(joint->type) && !radius) {
     node.KeyError("the key 'radius' is missing; friction of a rotation acts at a radius");
   } else if (!Rotates(joint->type) && radius) {
