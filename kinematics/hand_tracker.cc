@@ -125,7 +125,8 @@ HandTracker::HandTracker(const KinematicTree& tree, const GraspFrame& grasp, con
       product_(tree.nv, tree.nv),
       normal_(tree.nv),
       step_(tree.nv),
-      dead_zone_(q) {
+      dq_(tree.nv),
+      origin_(q) {
   options.Validate();
   rescue_options_.weight = options.weight;
   rescue_options_.max_weight = std::max(options.weight, rescue_options_.max_weight);
@@ -147,12 +148,26 @@ HandTracker::HandTracker(const KinematicTree& tree, const GraspFrame& grasp, con
 TrackStatus HandTracker::Advance(const Posed& X_WH) noexcept {
   ++summary_.targets;
   problem_.SetTarget(X_WH);
+  trial_ = q_;
   Progress progress = TakeSteps();
   TrackStatus verdict = Judge();
   if ((verdict != TrackStatus::kFollowed || progress == Progress::kNone) &&
       options_.rescue_iterations > 0) {
     progress = Rescue();
     verdict = Judge();
+  }
+  if (verdict == TrackStatus::kJump) {
+    switch (FindMirrorImage()) {
+      case Beyond::kFold:
+        progress = TakeSteps();
+        verdict = Judge();
+        break;
+      case Beyond::kPassage:
+        verdict = TrackStatus::kFollowed;
+        break;
+      case Beyond::kUnknown:
+        break;
+    }
   }
   if (verdict == TrackStatus::kFollowed) return Accept(progress);
   if (verdict == TrackStatus::kDeadCentre && StandBeside()) MoveToTrial();
@@ -161,11 +176,10 @@ TrackStatus HandTracker::Advance(const Posed& X_WH) noexcept {
 
 /// Gauss-Newton, and with second derivatives once it turns out to be slow.
 HandTracker::Progress HandTracker::TakeSteps() noexcept {
-  trial_ = q_;
   double first_error = 0, last_step = 0;
   bool slow = false;
   for (int i = 0; i < options_.steps; ++i) {
-    if (!TakeStep(slow)) return Progress::kNone;
+    if (!TakeStep(slow) && !(slow && TakeStep(false))) return Progress::kNone;
     const double size = workspace_.step.dx.lpNorm<Eigen::Infinity>();
     if (size <= options_.step_tolerance) return Progress::kArrived;
     slow = slow || (i > 0 && size > kSlow * last_step);
@@ -235,10 +249,9 @@ double HandTracker::BranchDeterminant() noexcept {
   return sign * std::exp(log - log_reference_);
 }
 
-/// From a pose in the dead zone to its side: along the motion that neither hand nor loops resist
-/// there, by inverse iteration on A'A.
-bool HandTracker::StandBeside() noexcept {
-  dead_zone_ = trial_;
+/// The motion that hand and loops resist least at trial_, by inverse iteration on A'A: step_, of
+/// size kBeside.
+void HandTracker::FindSoftMotion() noexcept {
   product_ = A_.transpose().lazyProduct(A_);
   product_.diagonal().array() += kUnseen * product_.diagonal().maxCoeff();
   normal_.compute(product_);
@@ -247,15 +260,43 @@ bool HandTracker::StandBeside() noexcept {
     normal_.solveInPlace(step_);
     step_ *= kBeside / step_.lpNorm<Eigen::Infinity>();
   }
-  for (int side = 0; side < 2; ++side, step_ = -step_) {
-    problem_.Plus(dead_zone_, step_, &trial_);
-    Close();
-    StackJacobians();
-    determinant_ = BranchDeterminant();
-    const bool closed = at_trial_.c.lpNorm<Eigen::Infinity>() <= options_.closure_tolerance;
-    if (closed && determinant_ > 0 && WithinLimits()) return true;
+}
+
+/// trial_ goes from origin_ by `size` soft motions. Whether the loops close there, on the branch.
+bool HandTracker::TryBeside(double size) noexcept {
+  dq_ = size * step_;
+  problem_.Plus(origin_, dq_, &trial_);
+  Close();
+  StackJacobians();
+  determinant_ = BranchDeterminant();
+  const bool closed = at_trial_.c.lpNorm<Eigen::Infinity>() <= options_.closure_tolerance;
+  return closed && determinant_ > 0 && WithinLimits();
+}
+
+/// From a pose in the dead zone to its side.
+bool HandTracker::StandBeside() noexcept {
+  origin_ = trial_;
+  FindSoftMotion();
+  return TryBeside(1) || TryBeside(-1);
+}
+
+/// trial_ is beyond a singular pose. Where the soft motion leads across it, the hand's poses are
+/// folded there: each is reached from both sides, at about the same distance, since the determinant
+/// is linear; trial_ moves to the mirror image on the branch. Where the soft motion leads along the
+/// singular poses (a wrist whose outer axes are in line, a leg in line with its first axis), this
+/// side has no other pose for the hand, and the way on is a smooth one; trial_ stays.
+HandTracker::Beyond HandTracker::FindMirrorImage() noexcept {
+  origin_ = trial_;
+  const double beyond = determinant_;
+  FindSoftMotion();
+  TryBeside(1);
+  const double size = -2 * beyond / (determinant_ - beyond);
+  if (std::abs(size) * kBeside <= options_.max_move) {
+    return TryBeside(size) ? Beyond::kFold : Beyond::kUnknown;
   }
-  return false;
+  trial_ = origin_;
+  const bool near = (trial_ - q_).lpNorm<Eigen::Infinity>() <= options_.max_move;
+  return near && Judge() == TrackStatus::kJump ? Beyond::kPassage : Beyond::kUnknown;
 }
 
 bool HandTracker::WithinLimits() const noexcept {
@@ -279,7 +320,8 @@ void HandTracker::MoveToTrial() noexcept {
   summary_.worst_closure = std::max(summary_.worst_closure, at_trial_.c.lpNorm<Eigen::Infinity>());
   const double behind = (q_ - q_reference_).cwiseAbs().maxCoeff();
   const bool near = determinant_ * std::exp(log_reference_ - log_best_) < kReferenceNear;
-  if (behind > (near ? kReferenceRange : kReferenceBehind)) TakeReference();
+  const bool passed = determinant_ < 0;  // Beyond::kPassage
+  if (passed || behind > (near ? kReferenceRange : kReferenceBehind)) TakeReference();
 }
 
 /// The last good pose becomes the reference.

@@ -27,8 +27,9 @@ struct TrackOptions {
   /// lambda of paper eq. (8) against the dimensionless hand error [-], 1..1e4. The multiplier
   /// update makes the result independent of it; from 1e3 on, rounding begins to count.
   double weight = 5e1;
-  /// Steps for one target, 1..20. More follow a faster hand, or one that pulls hard.
-  int steps = 5;
+  /// Most steps for one target, 1..20. More follow a faster hand, one that pulls hard, and one
+  /// near a dead centre, where each step only halves what is left.
+  int steps = 10;
   /// Iterations with line search for targets that those steps do not reach, 0..100. They are
   /// needed where the hand is off the mechanism's path by more than its radius of curvature.
   int rescue_iterations = 12;
@@ -65,9 +66,11 @@ struct TrackSummary {
 /// factor, the product of the determinants of the reduced Jacobian J N (N the free motions) here
 /// and at a good pose shortly before. It keeps its sign while poses follow each other on one
 /// branch, and vanishes at a dead centre: where the hand cannot move the mechanism, or the loops do
-/// not determine it. A pose with the other sign is refused, and the last good one held. At a dead
+/// not determine it. Beyond a dead centre that folds the hand's poses, each of them is reached from
+/// both sides: the one on this side is taken, and without one the last good pose is held. At a dead
 /// centre the mechanism stands 2 mrad beside it, on its side, until the hand comes back. So a
-/// parallelogram that is stretched out stays so: both ways on are as good.
+/// parallelogram that is stretched out stays so: both ways on are as good. A singular pose that
+/// folds nothing (the outer axes of a wrist in line) is passed straight through.
 class HandTracker {
  public:
   /// Keeps a reference to the tree. q is a closed pose (Assemble).
@@ -98,6 +101,7 @@ class HandTracker {
   };
 
   enum class Progress { kNone, kSome, kArrived };
+  enum class Beyond { kUnknown, kFold, kPassage };  ///< what a singular pose was
 
   Progress TakeSteps() noexcept;
   bool TakeStep(bool with_curvature) noexcept;
@@ -106,7 +110,10 @@ class HandTracker {
   void Close() noexcept;
   void StackJacobians() noexcept;
   double BranchDeterminant() noexcept;
+  void FindSoftMotion() noexcept;
+  bool TryBeside(double size) noexcept;
   bool StandBeside() noexcept;
+  Beyond FindMirrorImage() noexcept;
   bool WithinLimits() const noexcept;
   TrackStatus Accept(Progress progress) noexcept;
   TrackStatus Hold(TrackStatus why) noexcept;
@@ -127,7 +134,7 @@ class HandTracker {
   double log_best_ = -std::numeric_limits<double>::infinity();  // the largest so far
   double determinant_ = 1;                                      // BranchDeterminant() at trial_
   Eigen::LDLT<MatrixXd> normal_;
-  VectorXd step_, dead_zone_;  // of StandBeside()
+  VectorXd step_, dq_, origin_;  // a soft motion, and where it starts
   TrackSummary summary_;
 };
 

@@ -242,6 +242,56 @@ TEST(HandTracker, RefusesToJumpToTheOtherAssemblyMode) {
   EXPECT_LE(tracker.summary().worst_closure, kClosed);
 }
 
+/// Three axes through one point, about z, y and z: the outer ones are in line at q[1] = 0.
+Mechanism Wrist() {
+  Mechanism wrist;
+  wrist.links = {{"ground", {}, {}}};
+  const Vector3d axes[] = {Vector3d::UnitZ(), Vector3d::UnitY(), Vector3d::UnitZ()};
+  for (int i = 0; i < 3; ++i) {
+    Posed X_LA;
+    X_LA.R = AxesFromZX(axes[i], Vector3d::UnitX());
+    wrist.links[i].anchors.push_back({"out", X_LA});
+    const int out = static_cast<int>(wrist.links[i].anchors.size()) - 1;
+    wrist.links.push_back({"link" + std::to_string(i), {}, {{"in", X_LA}}});
+    wrist.joints.push_back(
+        MakeJoint("joint" + std::to_string(i), JointType::kRevolute, {i, out}, {i + 1, 0}));
+  }
+  wrist.grasps = {{"hand", 3, Posed{}, GraspKind::kRigid}};
+  return wrist;
+}
+
+TEST(HandTracker, GoesStraightThroughAWristWhoseAxesComeInLine) {
+  const KinematicTree tree = BuildKinematicTree(Wrist());
+  InverseKinematics pose(tree, GraspFrameOf(tree, 0));
+  HandTracker tracker(tree, GraspFrameOf(tree, 0), Eigen::Vector3d(0.3, 0.5, 0.4));
+  VectorXd q(3);
+  for (int k = 1; k <= 100; ++k) {
+    q << 0.3 + 0.002 * k, 0.5 - 0.01 * k, 0.4 - 0.001 * k;
+    (void)tracker.Advance(pose.GraspPose(q));
+    ASSERT_LT((tracker.q() - q).lpNorm<Eigen::Infinity>(), 0.05) << "target " << k;
+  }
+  EXPECT_LT((tracker.q() - q).lpNorm<Eigen::Infinity>(), kArrived);  // q[1] = -0.5
+  EXPECT_LE(tracker.summary().held(), 2) << tracker.summary().BriefReport();
+}
+
+TEST(HandTracker, FollowsOnItsOwnSideAHandThatTouchesTheEdgeOfTheWorkspace) {
+  // The elbow of the path goes through the stretched pose: the hand comes to the edge of the
+  // workspace and back, and the tracker's elbow stays on its side.
+  const Held held("two-link-arm");
+  InverseKinematics pose(held.tree, held.grasp);
+  VectorXd q = held.q;
+  q << 0.5, 0.31;
+  HandTracker tracker(held.tree, held.grasp, q);
+  for (int k = 1; k <= 30; ++k) {
+    q << 0.5 + 0.01 * k, 0.31 - 0.02 * k;
+    (void)tracker.Advance(pose.GraspPose(q));
+    const Posed X_WG = pose.GraspPose(tracker.q());
+    EXPECT_LT((X_WG.p - pose.GraspPose(q).p).norm(), 1e-5) << "target " << k;
+    ASSERT_GT(tracker.q()[1], 0) << "target " << k;
+  }
+  EXPECT_NEAR(tracker.q()[1], -q[1], 1e-5);
+}
+
 TEST(HandTracker, CatchesUpWithAHandThatIsFarAway) {
   const Held held("crank");
   TrackOptions options;
