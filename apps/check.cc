@@ -8,6 +8,8 @@
 #include <numbers>
 #include <utility>
 
+#include "vmech/apps/dh_text.h"
+
 namespace vmech {
 namespace {
 
@@ -120,11 +122,34 @@ std::string MobilityWords(const MechanismCheck& check) {
   return text;
 }
 
+/// The table as it is: SI, every digit.
+Json DhJson(const Mechanism& m, const DhTable& table) {
+  constexpr std::string_view kMotions[] = {"fixed", "rotation", "translation", "screw"};
+  Json rows = Json::array();
+  for (size_t i = 0; i < table.rows.size(); ++i) {
+    const DhRow& row = table.rows[i];
+    Json entry{{"z_along", row.axis}, {"from", row.from < 0 ? Json() : Json(row.from)}};
+    if (row.link >= 0) entry["link"] = m.links[row.link].name;
+    entry["link_frame"] = row.link >= 0 && table.row_of_link[row.link] == static_cast<int>(i);
+    entry["motion"] = kMotions[static_cast<int>(row.motion)];
+    if (row.joint >= 0) entry["joint"] = m.joints[row.joint].name;
+    if (row.joint >= 0) entry["freedom"] = row.freedom;
+    if (row.motion == DhMotion::kScrew) entry["pitch"] = row.pitch;
+    const DhParameters& p = row.parameters;
+    entry.update({{"theta", p.theta}, {"d", p.d}, {"a", p.a}, {"alpha", p.alpha}});
+    entry.update({{"beta", p.beta}, {"gamma", row.gamma}, {"b", row.b}});
+    entry["axes"] = NameOf(row.relation);
+    rows.push_back(entry);
+  }
+  return rows;
+}
+
 }  // namespace
 
 MechanismCheck CheckMechanism(Mechanism mechanism) {
   MechanismCheck check;
   check.tree = BuildKinematicTree(std::move(mechanism));
+  check.dh = DeduceDhTable(check.tree.mechanism, check.tree.spanning);
   VectorXd q = StartCoordinates(check.tree);
   check.assembly = Assemble(check.tree, {}, &q);
   check.mobility.q_general = q;
@@ -149,7 +174,7 @@ std::string TextReport(const MechanismCheck& check) {
     text += fmt::format("grasp       {} on {}, {}\n", grasp.name, m.links[grasp.link].name,
                         grasp.kind == GraspKind::kRigid ? "rigid" : "point");
   }
-  return text;
+  return text + "\n" + DhText(m, check.dh);
 }
 
 std::string JsonReport(const MechanismCheck& check) {
@@ -185,6 +210,7 @@ std::string JsonReport(const MechanismCheck& check) {
     json["redundant_equations"] = check.mobility.redundant;
     json["singular_start"] = check.mobility.singular_here;
   }
+  json["denavit_hartenberg"] = DhJson(m, check.dh);
   return json.dump(2) + "\n";
 }
 

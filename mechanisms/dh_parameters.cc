@@ -33,7 +33,7 @@ DhPair ByCommonNormal(const Vector3d& u, const Vector3d& p, const Vector3d& n) {
   const bool meet = std::abs(a) <= kMeets * p.norm();
   pair.relation = meet ? AxesRelation::kIntersecting : AxesRelation::kSkew;
   if (meet) a = 0;
-  const double side = a < 0 ? -1 : 1;
+  const double side = (meet ? x.x() < -kMeets : a < 0) ? -1 : 1;
   x *= side;
   // The feet: (0, 0, d) on P's axis, p + t u on Q's; their difference has no part along z x x.
   const double t = p.dot(Vector3d::UnitZ().cross(x)) / (side * sine);

@@ -50,9 +50,9 @@ struct DhPair {
 };
 
 /// The row between the z axes of P and Q by their common normal. Where the axes leave a choice: x
-/// points from P's axis to Q's, and where they meet it is z_P x z_Q (alpha > 0); for parallel axes
-/// the normal goes through P's origin; for nearly parallel ones x points from P's origin to where
-/// Q's axis pierces the xy plane of P.
+/// points from P's axis to Q's, and where they meet it is that of +-z_P x z_Q which is nearer to x
+/// of P (z_P x z_Q on a tie); for parallel axes the normal goes through P's origin; for nearly
+/// parallel ones x points from P's origin to where Q's axis pierces the xy plane of P.
 DhPair DeduceDh(const Posed& X_PQ);
 
 }  // namespace vmech

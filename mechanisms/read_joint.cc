@@ -194,7 +194,14 @@ std::optional<JointType> ReadType(const Node& node) {
                                              std::nullopt);
 }
 
-void ReadConnects(const Node& node, const AnchorNames& anchors, Joint* joint) {
+/// An end of a joint. Beside a row of Denavit-Hartenberg parameters it may be the name of a link.
+AnchorId ReadEnd(const Node& end, const AnchorNames& anchors, const std::string& joint, bool dh) {
+  const bool names_anchor =
+      end.kind() != Node::Kind::kScalar || end.Text().find('/') != std::string::npos;
+  return dh && !names_anchor ? anchors.FindOnLink(end, joint) : anchors.Find(end);
+}
+
+void ReadConnects(const Node& node, const AnchorNames& anchors, bool dh, Joint* joint) {
   const std::vector<Node> ends = node.List();
   if (ends.size() != 2) {
     if (node.kind() == Node::Kind::kList) {
@@ -202,8 +209,11 @@ void ReadConnects(const Node& node, const AnchorNames& anchors, Joint* joint) {
     }
     return;
   }
-  joint->first = anchors.Find(ends[0]);
-  joint->second = anchors.Find(ends[1]);
+  joint->first = ReadEnd(ends[0], anchors, joint->name, dh);
+  joint->second = ReadEnd(ends[1], anchors, joint->name, dh);
+  if (dh && joint->second.link >= 0 && ends[1].Text().find('/') != std::string::npos) {
+    ends[1].Error("'dh' leads to the frame of a link; write the link's name alone");
+  }
   if (joint->first.link >= 0 && joint->first.link == joint->second.link) {
     node.Error("the joint connects a link with itself");
   }
@@ -213,6 +223,7 @@ void ReadConnects(const Node& node, const AnchorNames& anchors, Joint* joint) {
 
 AnchorNames::AnchorNames(const std::vector<Link>& links) {
   for (size_t i = 0; i < links.size(); ++i) {
+    links_.push_back(links[i].name);
     for (size_t a = 0; a < links[i].anchors.size(); ++a) {
       names_.push_back(links[i].name + "/" + links[i].anchors[a].name);
       ids_[names_.back()] = {static_cast<int>(i), static_cast<int>(a)};
@@ -229,16 +240,25 @@ AnchorId AnchorNames::Find(const Node& node) const {
   return {};
 }
 
+AnchorId AnchorNames::FindOnLink(const Node& node, const std::string& joint) const {
+  const std::string link = node.Text();
+  const auto found = ids_.find(link + "/" + joint);
+  if (found != ids_.end()) return found->second;
+  node.Error("link " + Quoted(link) + " not found" + DidYouMean(link, links_));
+  return {};
+}
+
 Joint ReadJoint(const Node& node, const AnchorNames& anchors, const Units& units) {
   node.CheckName();
-  if (!node.CheckKeys({"type", "connects"}, {"description", "start", "pitch", "limits", "viscous",
-                                             "coulomb", "friction", "spring", "stiffness"})) {
+  if (!node.CheckKeys({"type", "connects"},
+                      {"description", "dh", "start", "pitch", "limits", "viscous", "coulomb",
+                       "friction", "spring", "stiffness"})) {
     return MakeJoint(node.key(), JointType::kWeld, {}, {});
   }
   node["description"].Text();
   const std::optional<JointType> type = ReadType(node["type"]);
   Joint joint = MakeJoint(node.key(), type.value_or(JointType::kWeld), {}, {});
-  ReadConnects(node["connects"], anchors, &joint);
+  ReadConnects(node["connects"], anchors, static_cast<bool>(node["dh"]), &joint);
   if (!type) return joint;
   ReadPitch(node, node["pitch"], units, &joint);
   ReadStiffness(node["stiffness"], units, &joint);

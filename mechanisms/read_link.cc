@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "vmech/mechanisms/mass_properties.h"
+#include "vmech/mechanisms/read_dh.h"
 
 namespace vmech {
 namespace {
@@ -109,6 +110,12 @@ MassProperties ReadMassProperties(const Node& link, const Units& units) {
 }  // namespace
 
 Posed ReadFrame(const Node& map, const Units& units) {
+  if (const Node dh = map["dh"]) {
+    for (const char* key : {"origin", "z", "x", "y"}) {
+      if (const Node extra = map[key]) extra.KeyError("not used beside 'dh'");
+    }
+    return ReadDhRows(dh, units);
+  }
   return {ReadAxes(map), units.length * map["origin"].Vector3()};
 }
 
@@ -124,7 +131,7 @@ Link ReadLink(const Node& node, const Units& units) {
   for (const Node& anchor : node["anchors"].Map()) {
     anchor.CheckName();
     Posed X_LA;
-    if (anchor.CheckKeys({}, {"origin", "z", "x", "y"})) X_LA = ReadFrame(anchor, units);
+    if (anchor.CheckKeys({}, {"origin", "z", "x", "y", "dh"})) X_LA = ReadFrame(anchor, units);
     link.anchors.push_back({anchor.key(), X_LA});
   }
   return link;

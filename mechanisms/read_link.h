@@ -8,7 +8,8 @@ namespace vmech {
 
 /// The parts of a file that describe one link. Each reports what is wrong at its node.
 
-/// A frame from the keys `origin`, `z`, `x` and `y` of a map; other keys are not looked at.
+/// A frame from the keys `origin`, `z`, `x` and `y` of a map, or from `dh` in their place; other
+/// keys are not looked at.
 Posed ReadFrame(const Node& map, const Units& units);
 
 /// An entry of `links`: mass, center_of_gravity, inertia, anchors.

@@ -4,6 +4,7 @@
 
 #include <unordered_map>
 
+#include "vmech/mechanisms/read_dh.h"
 #include "vmech/mechanisms/read_joint.h"
 #include "vmech/mechanisms/read_link.h"
 #include "vmech/mechanisms/units.h"
@@ -49,7 +50,7 @@ Grasp ReadGrasp(const Node& node, const PartNames& links, const Units& units) {
   Grasp grasp;
   grasp.name = node.key();
   node.CheckName();
-  if (!node.CheckKeys({"link"}, {"origin", "z", "x", "y", "kind"})) return grasp;
+  if (!node.CheckKeys({"link"}, {"origin", "z", "x", "y", "dh", "kind"})) return grasp;
   grasp.link = links.Find(node["link"]);
   grasp.X_LG = ReadFrame(node, units);
   grasp.kind = node["kind"].Word<GraspKind>(
@@ -122,6 +123,7 @@ void CheckMassless(const Mechanism& mechanism, const std::vector<Node>& links) {
 
 void ReadParts(const Node& root, const Units& units, Mechanism* mechanism) {
   for (const Node& link : root["links"].Map()) mechanism->links.push_back(ReadLink(link, units));
+  AddDhAnchors(root["joints"], units, &mechanism->links);
   const AnchorNames anchors(mechanism->links);
   const PartNames links("link", mechanism->links);
   for (const Node& joint : root["joints"].Map()) {

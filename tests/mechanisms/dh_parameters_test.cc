@@ -163,7 +163,7 @@ const std::vector<Line> kPuma{{{0, 0, 0}, {0, 0, 1}},
 
 TEST(DeduceDh, GivesBackTheTableOfThePuma560) {
   const double a[] = {0, 0.4318, 0.0203, 0, 0};
-  const double alpha[] = {kPi / 2, 0, -kPi / 2, kPi / 2, kPi / 2};  // the last by z1 x z2
+  const double alpha[] = {kPi / 2, 0, -kPi / 2, kPi / 2, -kPi / 2};
   const AxesRelation relation[] = {AxesRelation::kIntersecting, AxesRelation::kParallel,
                                    AxesRelation::kSkew, AxesRelation::kIntersecting,
                                    AxesRelation::kIntersecting};

@@ -18,7 +18,8 @@ BASE = {
                 "inertia": {"about": "origin", "xx": 1, "yy": 2, "zz": 2, "xy": -0.1},
                 "anchors": {"a": {}, "b": {}}},
         "hand": {"mass": 1, "inertia": {"principal": [1, 2, 2], "axes": AXES},
-                 "anchors": {"a": {}}, "x-colour": "red"},
+                 "anchors": {"a": {}, "row": {"dh": {"theta": 1, "d": 2}}}, "x-colour": "red"},
+        "tool": {"mass": 1, "anchors": {}},
     },
     "joints": {
         "pin": {"type": "revolute", "connects": ["frame/a", "arm/a"], "start": 40,
@@ -28,9 +29,12 @@ BASE = {
                  "limits": [[0, 5], None], "viscous": [1, 2],
                  "spring": {"stiffness": [1, 0], "rest": [1, 0]}},
         "ball": {"type": "spherical", "connects": ["arm/b", "hand/a"], "start": [1, 0, 0, 0]},
+        "row": {"type": "revolute", "connects": ["hand", "tool"],
+                "dh": [{"theta": 90, "d": 1, "a": 2, "alpha": -90, "beta": 0}]},
         "lead": {"type": "screw", "connects": ["arm/b", "hand/a"], "pitch": 2},
     },
-    "grasps": {"tip": {"link": "hand", "kind": "point"}},
+    "grasps": {"tip": {"link": "hand", "kind": "point"},
+               "palm": {"link": "tool", "dh": [{"a": 1}, {"theta": 3}]}},
     "cuts": ["ball"],
 }
 
@@ -54,6 +58,9 @@ MALFORMED = [
     ("joints.tube.limits", [0, 5]), ("joints.tube.spring.stiffness", REMOVED),
     ("joints.tube.spring.stiffness", 3), ("joints.ball.start", [1, 0]),
     ("joints.ball.limits", [[0, 1], [0, 1], [0, 1]]), ("joints.ball.spring", {"stiffness": 1}),
+    ("joints.row.dh", REMOVED), ("joints.row.dh", 3), ("joints.row.dh", {"tehta": 1}),
+    ("joints.row.connects", ["hand", "tool/a"]), ("grasps.palm.origin", [0, 0, 0]),
+    ("links.hand.anchors.row.z", [0, 0, 1]), ("links.hand.anchors.row.dh", [1, 2, 3, 4]),
     ("joints.lead.pitch", REMOVED), ("joints.lead.pitch", 0), ("grasps.tip.kind", "firm"),
     ("grasps.tip.link", REMOVED), ("cuts", "ball"), ("cuts", ["ball", "ball"]),
 ]
