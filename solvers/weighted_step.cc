@@ -15,6 +15,8 @@ constexpr double kNegligibleStep = 1e-13;  // [unit of the tangent]
 // A step is taken, whatever becomes of phi, if the next one is expected to be shorter by this.
 constexpr double kContraction = 0.25;
 constexpr double kScaleFloor = 1e-9;  // of the damping of a column that nothing depends on
+// A step this much shorter than the one before may be the last that needs derivatives.
+constexpr double kFast = 0.05;
 // Changes of phi smaller than this (relative) are rounding and do not refuse a step.
 constexpr double kRounding = 1e-13;
 
@@ -24,12 +26,18 @@ double MaxAbs(const VectorXd& v) noexcept {
   return largest;
 }
 
+bool WithinBounds(const ConstrainedLeastSquares& problem, const VectorXd& x) noexcept {
+  return std::ranges::all_of(problem.bounds(), [&](const Bound& bound) {
+    return x[bound.coordinate] >= bound.lower && x[bound.coordinate] <= bound.upper;
+  });
+}
+
 }  // namespace
 
 WeightedStep::WeightedStep(const ConstrainedLeastSquares& problem)
     : at_x(problem.sizes()), equations_(problem.sizes().tangents), at_trial_(problem.sizes()) {
   const ProblemSizes& sizes = problem.sizes();
-  dx = next_dx_ = scale_ = damping_ = VectorXd::Zero(sizes.tangents);
+  dx = chord_dx_ = scale_ = damping_ = VectorXd::Zero(sizes.tangents);
   S_ = MatrixXd::Zero(sizes.tangents, sizes.tangents);
   c_model_ = forces_ = VectorXd::Zero(sizes.constraints);
   trial_x_ = VectorXd::Zero(sizes.coordinates);
@@ -127,7 +135,7 @@ WeightedStep::Descent WeightedStep::Minimize(ConstrainedLeastSquares& problem, d
         descent.stationary = true;  // what is left of the gradient is rounding, times lambda^2
         break;
       }
-      if (full && length * length <= kNegligibleStep * last_length && TakeLastStep(problem, x)) {
+      if (full && FinishWithoutDerivatives(problem, lambda, mu, last_length, x)) {
         ++descent.iterations;
         descent.stationary = true;
         break;
@@ -207,6 +215,11 @@ double WeightedStep::TryStep(ConstrainedLeastSquares& problem, double lambda, co
 // lambda^2 while they converge quadratically. [Deuflhard, Newton Methods for Nonlinear
 // Problems, 3.3]
 bool WeightedStep::ContractsAtTrial(double lambda, const VectorXd& mu) noexcept {
+  FindChordStep(lambda, mu);
+  return MaxAbs(chord_dx_) < kContraction * MaxAbs(dx);
+}
+
+void WeightedStep::FindChordStep(double lambda, const VectorXd& mu) noexcept {
   const double weight = lambda * lambda;
   const VectorXd &r = at_trial_.r, &c = at_trial_.c;
   const double *J_j = at_x.J.data(), *C_j = at_x.C.data();
@@ -214,22 +227,47 @@ bool WeightedStep::ContractsAtTrial(double lambda, const VectorXd& mu) noexcept 
     double g_j = 0;
     for (int i = 0; i < r.size(); ++i) g_j += J_j[i] * r[i];
     for (int i = 0; i < c.size(); ++i) g_j += C_j[i] * (mu[i] + weight * c[i]);
-    next_dx_[j] = -g_j;
+    chord_dx_[j] = -g_j;
   }
-  equations_.Solve(&next_dx_);
-  return MaxAbs(next_dx_) < kContraction * MaxAbs(dx);
+  equations_.Solve(&chord_dx_);
 }
 
-// After a step so much shorter than the one before, even linear convergence leaves a negligible
-// one: no derivatives are needed to see that x is stationary.
-bool WeightedStep::TakeLastStep(ConstrainedLeastSquares& problem, VectorXd* x) noexcept {
+// After a step so much shorter than the one before that even linear convergence leaves a negligible
+// one, x is stationary. The same holds for the chord step that follows, as long as nothing pulls:
+// J and C change by about `length` on the way, and the gradient by that times the pull. The linear
+// model tells r and c after such a step.
+bool WeightedStep::FinishWithoutDerivatives(ConstrainedLeastSquares& problem, double lambda,
+                                            const VectorXd& mu, double last_length,
+                                            VectorXd* x) noexcept {
+  const double length = MaxAbs(dx);
+  if (length * length <= kNegligibleStep * last_length) {
+    problem.Plus(*x, dx, x);
+    MoveAlong(dx, &at_x);
+    return true;
+  }
+  if (length > kFast * last_length || length * MaxAbs(mu) > kNegligibleStep) return false;
   problem.Plus(*x, dx, &trial_x_);
   problem.Evaluate(trial_x_, &at_trial_.r, nullptr, &at_trial_.c, nullptr);
-  if (!std::isfinite(at_trial_.r.sum() + at_trial_.c.sum())) return false;
+  if (!(length * MaxAbs(at_trial_.r) <= kNegligibleStep)) return false;
+  FindChordStep(lambda, mu);
+  const double chord = MaxAbs(chord_dx_);
+  if (!(chord * chord <= kNegligibleStep * length)) return false;
+  problem.Plus(trial_x_, chord_dx_, &trial_x_);
+  if (!WithinBounds(problem, trial_x_)) return false;
   std::swap_ranges(x->begin(), x->end(), trial_x_.begin());
+  MoveAlong(chord_dx_, &at_trial_);
   at_x.r.swap(at_trial_.r);
   at_x.c.swap(at_trial_.c);
   return true;
+}
+
+// r += J step, c += C step, with J and C of at_x.
+void WeightedStep::MoveAlong(const VectorXd& step, Linearization* at) const noexcept {
+  const double *J_j = at_x.J.data(), *C_j = at_x.C.data();
+  for (double step_j : step) {
+    for (double& r_i : at->r) r_i += *J_j++ * step_j;
+    for (double& c_i : at->c) c_i += *C_j++ * step_j;
+  }
 }
 
 // Exchanges *x and the trial point, and what is known of them.

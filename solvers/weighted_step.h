@@ -60,7 +60,10 @@ class WeightedStep {
   double TryStep(ConstrainedLeastSquares& problem, double lambda, const VectorXd& mu,
                  double max_step, VectorXd* x) noexcept;
   bool ContractsAtTrial(double lambda, const VectorXd& mu) noexcept;
-  bool TakeLastStep(ConstrainedLeastSquares& problem, VectorXd* x) noexcept;
+  void FindChordStep(double lambda, const VectorXd& mu) noexcept;
+  bool FinishWithoutDerivatives(ConstrainedLeastSquares& problem, double lambda, const VectorXd& mu,
+                                double last_length, VectorXd* x) noexcept;
+  void MoveAlong(const VectorXd& step, Linearization* at) const noexcept;
   bool MoveToTrial(ConstrainedLeastSquares& problem, double lambda, const VectorXd& mu,
                    VectorXd* x) noexcept;
   bool WithinNoise() const noexcept { return promised_ <= noise_; }
@@ -74,7 +77,7 @@ class WeightedStep {
   Linearization at_trial_;
   VectorXd trial_x_;
   VectorXd scale_;  // largest diagonal of H so far: a column that fades keeps its damping (MINPACK)
-  VectorXd damping_, c_model_, next_dx_;
+  VectorXd damping_, c_model_, chord_dx_;
   VectorXd forces_;  // mu + lambda^2 c, what the constraints pull with
   MatrixXd S_;
   bool clipped_ = false;             // Clip() has changed dx
