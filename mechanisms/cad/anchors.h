@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "vmech/mechanisms/cad/bodies.h"
+#include "vmech/mechanisms/cad/frame_name.h"
+
+namespace vmech {
+
+/// A named frame on a body.
+struct BodyFrame {
+  int body = -1;
+  std::string frame;  ///< as the file calls it
+  FrameName name;
+  Posed X_WA;  ///< turned if its name ends in _inv
+};
+
+/// Two frames of one joint on two bodies.
+struct AnchorPair {
+  BodyFrame first, second;
+};
+
+/// Pairs by name. FreeCAD numbers names that come twice ("anchor_pin001"): such a number is
+/// overlooked where the name without it is there, too.
+struct AnchorMatches {
+  std::vector<AnchorPair> pairs;  ///< in the order of their first frames
+  std::vector<BodyFrame> unmatched;
+  std::vector<std::string> errors;  ///< three anchors of one joint, both on one body
+};
+AnchorMatches MatchAnchors(std::vector<BodyFrame> frames);
+
+/// The nearest frame on another body, free ones before others; none if there is no other.
+std::optional<BodyFrame> NearestFrame(const BodyFrame& frame, const std::vector<BodyFrame>& free,
+                                      const std::vector<BodyFrame>& all);
+
+}  // namespace vmech

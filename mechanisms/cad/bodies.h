@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "vmech/mechanisms/cad/cad_assembly.h"
+#include "vmech/mechanisms/cad/contacts.h"
+
+namespace vmech {
+
+/// What moves as one: a link to be.
+struct CadBody {
+  std::string name;
+  Posed X_WL;               ///< the axes of the subassembly or part
+  std::vector<int> parts;   ///< indices in CadAssembly
+  std::vector<int> frames;  ///< those that vmech knows (frame_name.h)
+};
+
+struct BodyOptions {
+  std::vector<std::string> rigid;   ///< subassemblies in which nothing moves
+  std::vector<std::string> ignore;  ///< parts and subassemblies to be left out
+};
+
+/// The bodies of an assembly:
+///   - a subassembly named in `rigid` is one, with all that is below it;
+///   - a subassembly with frames directly in it is one, with the parts below it that belong to no
+///     other; so that a part and its anchors make up one subassembly;
+///   - any other part is one by itself.
+/// `loose` receives the frames that stand directly in the file: they belong to the ground.
+/// @throws FileErrors if an option names no part or subassembly of the file.
+std::vector<CadBody> FindBodies(const CadAssembly& assembly, const BodyOptions& options,
+                                std::vector<int>* loose);
+
+/// The features of all parts of a body, in world axes.
+WorldFeatures FeaturesOf(const CadAssembly& assembly, const CadBody& body);
+
+}  // namespace vmech

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "vmech/mechanisms/cad/bodies.h"
+#include "vmech/mechanisms/mechanism.h"
+
+namespace vmech {
+
+/// Where densities come from, in this order: the user's word for a part, a product, a body or a
+/// material; the density in the file; the table of materials by the name in the file; the default.
+struct DensityOptions {
+  /// Name (of a part, product, body or material) and density [kg/m^3], 1e-3..1e5.
+  std::vector<std::pair<std::string, double>> by_name;
+  /// Of everything else [kg/m^3], 1e-3..1e5; that of steel.
+  double fallback = 7850;
+
+  /// @throws std::invalid_argument
+  void Validate() const;
+};
+
+/// A density from a number or from the name of a material ("steel", "aluminium", "pla"...).
+/// @throws std::invalid_argument naming the materials that are known.
+double DensityFromText(const std::string& text);
+
+/// Mass properties of a body in its axes L, and where they come from, part by part.
+struct BodyMass {
+  MassProperties mass_properties;
+  struct Part {
+    std::string name;
+    double volume = 0;   ///< [m^3]
+    double density = 0;  ///< [kg/m^3]
+    std::string source;  ///< of the density
+    bool assumed = false;
+  };
+  std::vector<Part> parts;
+  std::vector<std::string> defects;  ///< of its parts, in words
+};
+
+/// I_L = sum over the parts of density (R moments R' + volume (p.p 1 - p p')), p from the common
+/// centre of gravity to that of the part.
+BodyMass WeighBody(const CadAssembly& assembly, const CadBody& body, const DensityOptions& options);
+
+}  // namespace vmech

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "vmech/mechanisms/mechanism.h"
+
+namespace vmech {
+
+/// What the name of a coordinate system in a CAD file means. The prefix is that of vmech or of
+/// onshape-to-robot, in upper or lower case; what follows is the name of the joint or grasp:
+///
+///   anchor_NAME, dof_NAME  an anchor of the joint NAME; two parts that carry one are joined
+///   closing_NAME           the same; the joint is where a loop is best cut
+///   fix_NAME               the same; the joint is a weld
+///   frame_NAME             an anchor without a joint
+///   grasp_NAME             a grasp
+///
+/// Behind it may stand `__TYPE` (revolute, prismatic, cylindrical, universal, spherical or ball,
+/// planar, weld or fixed; of a grasp: rigid or point) and `_inv`, which turns the frame by half a
+/// turn about its x axis, so that z points the other way.
+struct FrameName {
+  enum class Role { kNone, kJoint, kAnchor, kGrasp };
+  Role role = Role::kNone;  ///< kNone: the name has no such prefix
+  std::string name;
+  std::optional<JointType> type;
+  GraspKind grasp = GraspKind::kRigid;
+  bool inverted = false;
+  bool prefer_cut = false;
+  std::string error;  ///< what is wrong with it ("'hinge' is no type of joint ..."), or empty
+};
+
+FrameName ParseFrameName(std::string_view name);
+
+/// The type of joint that a word names. None if there is no such type, or if it needs more than a
+/// frame can say (screw).
+std::optional<JointType> JointTypeFromWord(std::string_view word);
+
+}  // namespace vmech

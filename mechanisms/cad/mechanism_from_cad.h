@@ -1,0 +1,88 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "vmech/mechanisms/cad/bodies.h"
+#include "vmech/mechanisms/cad/body_mass.h"
+#include "vmech/mechanisms/cad/contacts.h"
+#include "vmech/mechanisms/mechanism.h"
+
+namespace vmech {
+
+/// From an assembly to a mechanism: bodies become links, named frames become anchors, two anchors
+/// of the same name on two bodies a joint. The anchors need not coincide in the file; how far they
+/// are apart is reported.
+
+struct CadImportOptions {
+  std::string name;  ///< of the mechanism; empty: that of the file
+  BodyOptions bodies;
+  DensityOptions densities;
+  ContactOptions contacts;
+  /// The body that stands still. Empty: the one called ground, frame, base, housing or stand; else
+  /// a link "ground" if there are frames directly in the file; else the first body.
+  std::string ground;
+  Vector3d gravity_W{0, 0, -9.81};  ///< [m/s^2], in the axes of the file
+  /// Types by joint, before what the frames say.
+  std::vector<std::pair<std::string, JointType>> joint_types;
+  bool propose = false;          ///< take the joints that the geometry suggests, too
+  bool allow_unmatched = false;  ///< keep anchors without a partner as anchors
+};
+
+struct ImportedBody {
+  int link = -1;
+  BodyMass mass;
+};
+
+struct ImportedJoint {
+  int joint = -1;
+  bool from_geometry = false;
+  bool type_assumed = false;  ///< neither the user nor a frame named it
+  double distance = 0;        ///< between the origins of the anchors, as drawn [m]
+  double angle = 0;           ///< between their axes, as drawn [rad]
+  /// What the joint cannot take up of it, at its start coordinates: these the assembly must close.
+  double gap = 0;   ///< [m]
+  double skew = 0;  ///< [rad]
+  JointSeat seat;
+  std::string why;  ///< of a joint from geometry
+};
+
+/// An anchor whose name no other body carries, with the nearest one that is free, or else the
+/// nearest of all.
+struct UnmatchedAnchor {
+  std::string frame, body;
+  std::string nearest_frame, nearest_body;  ///< empty if there is no other
+  double distance = 0;                      ///< [m]
+  double angle = 0;                         ///< between the axes, without their sense [rad]
+};
+
+/// A joint that the geometry suggests and that was not asked for.
+struct JointHint {
+  std::string first_body, second_body;
+  ProposedJoint joint;
+};
+
+struct CadImport {
+  std::string file;
+  std::string unit;
+  Mechanism mechanism;
+  std::vector<ImportedBody> bodies;  ///< in the order of the links
+  std::vector<ImportedJoint> joints;
+  std::vector<UnmatchedAnchor> unmatched;
+  std::vector<JointHint> hints;
+  std::vector<std::string> guesses;  ///< what was assumed, in words
+  std::vector<std::string> remarks;  ///< of the file: renamed, passed over, implausible
+
+  /// A page for a terminal: bodies with their mass and its source, joints with distances and
+  /// angles, shafts, what was guessed.
+  std::string FullReport() const;
+};
+
+/// @throws FileErrors with everything that is wrong: parts without a volume, anchors without a
+///         partner, three anchors of one joint, types that contradict, bodies without a joint.
+///         std::invalid_argument for options out of range.
+CadImport MechanismFromCad(const CadAssembly& assembly, const CadImportOptions& options = {});
+
+}  // namespace vmech

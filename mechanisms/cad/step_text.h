@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "vmech/mechanisms/cad/cad_assembly.h"
+
+namespace vmech {
+
+/// What can be said of a STEP file without Open CASCADE.
+
+/// @throws FileErrors if the file cannot be read, is not STEP (ISO 10303-21), is cut off, refers to
+///         entities that it does not hold, or places components by mirrors or scales: Open CASCADE
+///         7.6 takes these for plain placements, without a word.
+void RequireWholeStepFile(const std::filesystem::path& path);
+
+/// The name of a component: its own, unless it is one that the writing program made up ("NAUO3",
+/// "=>[0:1:1:2]", a number, nothing); then that of its product.
+std::string ComponentName(const std::string& component, const std::string& product);
+
+/// Checks and completes what was read: names without characters that vmech refuses, each part's
+/// name once, remarks about units and sizes.
+/// @throws FileErrors if there is no part at all.
+void FinishAssembly(CadAssembly* assembly);
+
+}  // namespace vmech
