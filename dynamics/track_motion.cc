@@ -2,15 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "vmech/dynamics/hand_wrench.h"
 #include "vmech/dynamics/idle_freedoms.h"
 #include "vmech/dynamics/load_model.h"
-#include "vmech/kinematics/follow_hand.h"
 #include "vmech/kinematics/forward_kinematics.h"
+#include "vmech/kinematics/inverse_kinematics.h"
 #include "vmech/kinematics/loops.h"
 #include "vmech/kinematics/packet.h"
+#include "vmech/solvers/nullspace.h"
 
 namespace vmech {
 namespace {
@@ -41,6 +43,11 @@ class Tracker {
       const int q = CoordinateIndex(tree_, drive.joint, drive.freedom);
       coordinate_.push_back(q);
       position_.push_back(q_[q]);
+    }
+    if (study.hand) {
+      hand_.emplace(
+          tree_, GraspFrameOf(tree_, study.hand->grasp),
+          InverseKinematicsOptions{.stiffness = model_.hand_stiffness, .joint_limits = false});
     }
     EvaluatePose(tree_, q_, &ws_);
     idle_.Remember(ws_);
@@ -113,6 +120,8 @@ class Tracker {
   static constexpr int kApproachSteps = 16;
   static constexpr int kDeepestHalving = 20;
   static constexpr int kNewtonSteps = 6;
+  static constexpr double kSettled = 1e-12;    ///< KKT error of a pose that a hand has led to
+  static constexpr double kLongestStep = 0.5;  ///< after a hand [rad], or metres: on one branch
   /// A correction of the predicted pose beyond this share of the step, or these radians, is not
   /// trusted to stay on the branch.
   static constexpr double kTrustedShare = 0.5;
@@ -243,14 +252,15 @@ class Tracker {
   }
 
   void Follow(double time, size_t pose) {
-    const HandTarget target{GraspNode(model_),
-                            tree_.X_node_link(tree_.mechanism.grasps[study_.hand->grasp].link) *
-                                tree_.mechanism.grasps[study_.hand->grasp].X_LG,
-                            study_.hand->law.At(time).X_WH, model_.hand_stiffness};
-    FollowOptions options;
-    options.tolerance = tolerance_;
-    const FollowSummary summary = FollowHand(tree_, target, options, &dependents_, &ws_, &q_);
-    if (!summary.converged) Lost(time, pose);
+    NullspaceOptions options;
+    options.max_step = kLongestStep;
+    options.stopping.constraint_tolerance = tolerance_;
+    options.stopping.optimality_tolerance = kSettled;
+    hand_->SetTarget(study_.hand->law.At(time).X_WH);
+    const Summary summary = Solve(*hand_, options, q_);
+    q_ = summary.x;
+    EvaluatePose(tree_, q_, &ws_);
+    if (!summary.converged()) Lost(time, pose);
     UnwrapCutPositions();
   }
 
@@ -325,6 +335,7 @@ class Tracker {
   std::vector<Vector3<Packet>> packet_cut_ = std::vector<Vector3<Packet>>(tree_.loops.size());
   std::vector<Packet> packet_step_ = std::vector<Packet>(tree_.nv, Packet(0));
   IdlePositions idle_;
+  std::optional<InverseKinematics> hand_;
   VectorXd q_, q_trial_, q_predicted_;
   VectorXd q_past_[3];  ///< accepted poses before q_, the latest first
   VectorXd step_;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vmech/kinematics/follow_hand.h"
+#include "vmech/kinematics/rotation_error.h"
 #include "vmech/solvers/stopping_rule.h"
 
 namespace vmech {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <random>
 
-#include "vmech/kinematics/follow_hand.h"
+#include "vmech/kinematics/rotation_error.h"
 
 namespace vmech {
 namespace {

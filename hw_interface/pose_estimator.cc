@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "vmech/kinematics/follow_hand.h"
+#include "vmech/kinematics/rotation_error.h"
 
 namespace vmech {
 

@@ -68,6 +68,12 @@ Matrix3d LogarithmCurvature(const Vector3d& e, const Vector3d& g) {
 
 }  // namespace
 
+Vector6d HandError(const Posed& X_WG, const Posed& X_WH) {
+  Vector6d e1;
+  e1 << X_WH.p - X_WG.p, Logarithm(X_WH.R * X_WG.R.transpose());
+  return e1;
+}
+
 Vector3d RotationErrorOf(RotationError kind, const Matrix3d& R_E) {
   return kind == RotationError::kLogarithm ? Logarithm(R_E) : SkewPart(R_E);
 }

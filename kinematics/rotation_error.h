@@ -13,6 +13,9 @@ enum class RotationError {
   kPaper,
 };
 
+/// e1 [6; m, rad]: displacement and logarithm of the rotation that lead from G to H, world axes.
+Vector6d HandError(const Posed& X_WG, const Posed& X_WH);
+
 /// The error e(R_E) [rad].
 Vector3d RotationErrorOf(RotationError kind, const Matrix3d& R_E);
 

@@ -10,7 +10,7 @@
 #include "vmech/hw_interface/stability.h"
 #include "vmech/hw_interface/stable_inertia.h"
 #include "vmech/kinematics/assembly.h"
-#include "vmech/kinematics/follow_hand.h"
+#include "vmech/kinematics/rotation_error.h"
 
 namespace vmech {
 namespace {
