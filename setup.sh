@@ -9,7 +9,8 @@ Usage: ./setup.sh COMMAND
 
   demo              build the vmech command and run the bearing-load study of a slider-crank
   test              build everything and run every test
-  packages GROUP... install the groups of packages.txt: core, cad, tests, tools, optional
+  packages GROUP... install the groups of packages.txt: core, cad, doors, tests,
+                    tools, optional
   help              show this text
 
 Missing Debian packages are installed first, as root or through sudo; nothing else is downloaded.
@@ -75,7 +76,7 @@ run_demo() {
 }
 
 run_tests() {
-  install_packages core cad tests tools
+  install_packages core cad doors tests tools
   cmake --preset dev
   cmake --build --preset dev
   ctest --preset dev
@@ -89,7 +90,7 @@ case "${1:-help}" in
   demo) run_demo ;;
   test) run_tests ;;
   packages)
-    [[ $# -gt 1 ]] || die "packages: name at least one group: core, cad, tests, tools, optional"
+    [[ $# -gt 1 ]] || die "packages: name one or more of core, cad, doors, tests, tools, optional"
     install_packages "${@:2}"
     ;;
   help | -h | --help) usage ;;

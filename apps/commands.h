@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "vmech/apps/ik.h"
+#include "vmech/apps/import.h"
 
 namespace vmech {
 
@@ -46,6 +47,15 @@ struct IkArguments {
   bool json = false;
 };
 int RunIk(const IkArguments& arguments);
+
+int RunImport(ImportArguments arguments);
+
+struct ExportArguments {
+  std::filesystem::path mechanism, out;
+  bool si = false;         ///< .yaml: metres and radians instead of millimetres and degrees
+  bool dh_frames = false;  ///< links drawn in their Denavit-Hartenberg frames
+};
+int RunExport(const ExportArguments& arguments);
 
 struct HapticArguments {
   std::filesystem::path file;        ///< of a mechanism, or of a study with a hand

@@ -85,6 +85,48 @@ void AddIk(CLI::App* app, vmech::IkArguments* ik) {
   command->add_flag("--json", ik->json, "print JSON instead of text");
 }
 
+constexpr const char* kImportHelp =
+    "Makes a mechanism file of a file of another program, told by its ending:\n"
+    "  .sdf, .world   SDFormat (Gazebo)\n"
+    "  .urdf          URDF (ROS); its loops come from a side file\n"
+    "and reports bodies, masses, joints, what was guessed and what was left out.";
+
+void AddImport(CLI::App* app, vmech::ImportArguments* import) {
+  CLI::App* command = app->add_subcommand("import", kImportHelp);
+  command->add_option("FILE", import->file, "what to read")->required()->type_name("FILE");
+  command->add_option("--out", import->out, "mechanism file to write")
+      ->required()
+      ->type_name("YAML");
+  command->add_option("--ground", import->options.ground, "link that stands still")
+      ->type_name("NAME");
+  command
+      ->add_option("--gravity", import->gravity,
+                   "in world axes [m/s^2], \"0 0 -9.81\" (default: that of the file)")
+      ->type_name("NUMBERS");
+  command->add_option("--loops", import->loops, "side file with the loops of a URDF")
+      ->type_name("FILE");
+  command->add_flag("--si", import->si, "metres and radians instead of millimetres and degrees");
+}
+
+constexpr const char* kExportHelp =
+    "Writes a mechanism, YAML or JSON, for other programs, by the ending of the output:\n"
+    "  .sdf          SDFormat 1.9 (Gazebo), loops and all\n"
+    "  .xml, .mjcf   MuJoCo, loops as equality constraints\n"
+    "  .yaml         vmech's own format\n"
+    "and says what the other format cannot hold.";
+
+void AddExport(CLI::App* app, vmech::ExportArguments* arguments) {
+  CLI::App* command = app->add_subcommand("export", kExportHelp);
+  command->add_option("MECHANISM", arguments->mechanism, "mechanism file, YAML or JSON")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("--out", arguments->out, "file to write")->required()->type_name("FILE");
+  command->add_flag("--dh-frames", arguments->dh_frames,
+                    "draw every link in its Denavit-Hartenberg frame");
+  command->add_flag("--si", arguments->si,
+                    ".yaml in metres and radians instead of millimetres and degrees");
+}
+
 constexpr const char* kHapticHelp =
     "Puts a mechanism into a hand: a loop at the device's rate moves it with the handle and "
     "returns "
@@ -183,6 +225,10 @@ int Run(int argc, char** argv) {
   AddIk(&app, &ik);
   vmech::HapticArguments haptic;
   AddHaptic(&app, &haptic);
+  vmech::ImportArguments import;
+  AddImport(&app, &import);
+  vmech::ExportArguments export_arguments;
+  AddExport(&app, &export_arguments);
 
   try {
     app.parse(argc, argv);
@@ -193,6 +239,8 @@ int Run(int argc, char** argv) {
                    : loads_command->parsed()      ? RunLoads(loads)
                    : app.got_subcommand("ik")     ? RunIk(ik)
                    : app.got_subcommand("haptic") ? RunHaptic(haptic)
+                   : app.got_subcommand("import") ? RunImport(import)
+                   : app.got_subcommand("export") ? RunExport(export_arguments)
                                                   : RunCompare(compare);
   if (std::fflush(stdout) != 0) throw vmech::FileErrors("standard output", "cannot be written");
   return code;

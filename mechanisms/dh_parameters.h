@@ -20,7 +20,7 @@ struct DhParameters {
 };
 
 /// The pose X above.
-Posed PoseOf(const DhParameters& parameters);
+Posed PoseOf(const DhParameters& row);
 
 /// How two axes lie to each other.
 enum class AxesRelation {

@@ -1,0 +1,46 @@
+#include <fmt/format.h>
+
+#include "vmech/apps/assembled.h"
+#include "vmech/apps/commands.h"
+#include "vmech/apps/output_folder.h"
+#include "vmech/mechanisms/denavit_hartenberg.h"
+#include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/exchange/mjcf.h"
+#include "vmech/mechanisms/exchange/sdf.h"
+#include "vmech/mechanisms/reader.h"
+#include "vmech/mechanisms/writer.h"
+
+namespace vmech {
+namespace {
+
+ExportedText Exported(const Mechanism& mechanism, const ExportArguments& arguments) {
+  const std::string ending = arguments.out.extension().string();
+  if (ending == ".yaml" || ending == ".yml") {
+    const FileUnits units =
+        arguments.si ? FileUnits::kMetresRadians : FileUnits::kMillimetresDegrees;
+    return {WriteMechanism(mechanism, {units, ""}), {}};
+  }
+  if (ending == ".sdf") return WriteSdf(Assembled(mechanism));
+  if (ending == ".xml" || ending == ".mjcf") return WriteMjcf(Assembled(mechanism));
+  throw FileErrors(arguments.out.string(),
+                   "what is written goes by the ending: .sdf (SDFormat), .xml or .mjcf (MuJoCo), "
+                   ".yaml (vmech)");
+}
+
+}  // namespace
+
+int RunExport(const ExportArguments& arguments) {
+  Mechanism mechanism = ReadMechanism(arguments.mechanism);
+  if (arguments.dh_frames) {
+    mechanism = DrawnInLinkFrames(mechanism, DeduceDhTable(mechanism, FindSpanningTree(mechanism)));
+  }
+  const ExportedText exported = Exported(mechanism, arguments);
+  OutputFolder folder(arguments.out.has_parent_path() ? arguments.out.parent_path() : ".");
+  folder.Write(arguments.out.filename().string(), exported.text);
+  folder.Commit();
+  for (const std::string& note : exported.notes) fmt::print("note        {}\n", note);
+  fmt::print("written to {}\n", arguments.out.string());
+  return kSuccess;
+}
+
+}  // namespace vmech

@@ -1,0 +1,85 @@
+#include "vmech/apps/import.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/exchange/sdf.h"
+#include "vmech/mechanisms/exchange/urdf.h"
+#include "vmech/mechanisms/mass_properties.h"
+
+namespace vmech {
+namespace {
+
+std::string LinkLine(const Mechanism& mechanism, int index, size_t width) {
+  const Link& link = mechanism.links[index];
+  const MassProperties& properties = link.mass_properties;
+  if (index == mechanism.ground) return fmt::format("  {:<{}} ground\n", link.name, width);
+  const Vector3d p = 1e3 * properties.p_LoLcm;
+  const Vector3d moments = 1e6 * PrincipalMoments(properties.I_Lcm);
+  return fmt::format(
+      "  {:<{}} {:.6g} kg, centre of gravity [{:.4g}, {:.4g}, {:.4g}] mm, principal inertia "
+      "[{:.4g}, {:.4g}, {:.4g}] kg mm^2\n",
+      link.name, width, properties.mass, p[0], p[1], p[2], moments[0], moments[1], moments[2]);
+}
+
+template <typename Parts>
+size_t WidestName(const Parts& parts) {
+  size_t width = 12;
+  for (const auto& part : parts) width = std::max(width, part.name.size());
+  return width;
+}
+
+ImportedFile ReadSdfFile(const ImportArguments& arguments) {
+  const ImportedMechanism imported = ReadSdf(arguments.file, arguments.options);
+  return {imported.mechanism, ImportReport(arguments.file, imported)};
+}
+
+ImportedFile ReadUrdfFile(const ImportArguments& arguments) {
+  ImportedMechanism imported = ReadUrdf(arguments.file, arguments.options);
+  const size_t joints = imported.mechanism.joints.size();
+  if (!arguments.loops.empty()) {
+    AddLoops(arguments.loops, &imported.mechanism);
+    imported.notes.push_back(fmt::format("{} of the joints come from {}",
+                                         imported.mechanism.joints.size() - joints,
+                                         arguments.loops.string()));
+  }
+  return {imported.mechanism, ImportReport(arguments.file, imported)};
+}
+
+}  // namespace
+
+const std::vector<ImportDoor>& ImportDoors() {
+  static const std::vector<ImportDoor> doors{
+      {{".sdf", ".world"}, "SDFormat", ReadSdfFile},
+      {{".urdf"}, "URDF", ReadUrdfFile},
+  };
+  return doors;
+}
+
+std::string ImportReport(const std::filesystem::path& file, const ImportedMechanism& imported) {
+  const Mechanism& mechanism = imported.mechanism;
+  std::string text = fmt::format("{}: {}\n\nlinks       {}\n", file.filename().string(),
+                                 mechanism.name, mechanism.links.size());
+  const size_t width = WidestName(mechanism.links);
+  for (size_t i = 0; i < mechanism.links.size(); ++i) {
+    text += LinkLine(mechanism, static_cast<int>(i), width);
+  }
+  text += fmt::format("joints      {}\n", mechanism.joints.size());
+  const size_t joint_width = WidestName(mechanism.joints);
+  for (const Joint& joint : mechanism.joints) {
+    text += fmt::format("  {:<{}} {:<11}  {} - {}\n", joint.name, joint_width, NameOf(joint.type),
+                        mechanism.links[joint.first.link].name,
+                        mechanism.links[joint.second.link].name);
+  }
+  for (const Grasp& grasp : mechanism.grasps) {
+    text += fmt::format("grasp       {} on {}\n", grasp.name, mechanism.links[grasp.link].name);
+  }
+  const Vector3d& g = mechanism.gravity_W;
+  text += fmt::format("gravity     [{:.6g}, {:.6g}, {:.6g}] m/s^2\n", g[0], g[1], g[2]);
+  for (const std::string& note : imported.notes) text += fmt::format("note        {}\n", note);
+  return text;
+}
+
+}  // namespace vmech
