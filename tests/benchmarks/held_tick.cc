@@ -1,0 +1,114 @@
+#include "held_tick.h"
+
+#include "vmech/hw_interface/simulated_master.h"
+#include "vmech/hw_interface/stability.h"
+#include "vmech/kinematics/assembly.h"
+#include "vmech/mechanisms/reader.h"
+
+namespace vmech {
+namespace {
+
+constexpr int kSamples = 2000;
+
+/// What the hand does when the device exerts nothing.
+std::vector<MasterState> Wandering(DeviceInfo* device) {
+  SimulatedMasterOptions options;
+  options.motion = Wander(
+      ArmModel(std::make_shared<const ArmDescription>(SarcosMasterArm())).X_DH(), 0.04, 0.15, 2);
+  SimulatedMaster master(options);
+  master.Configure();
+  master.Activate();
+  *device = master.info();
+  std::vector<MasterState> samples(kSamples);
+  for (int k = 0; k < kSamples; ++k) (void)master.Read(1'000'000LL * k, &samples[k]);
+  return samples;
+}
+
+VectorXd ClosedStart(const KinematicTree& tree) {
+  VectorXd q = StartCoordinates(tree);
+  if (!Assemble(tree, {}, &q).closed) std::abort();
+  return q;
+}
+
+MechanismTickOptions OptionsFor(const DeviceInfo& device) {
+  RenderingGains wanted;
+  wanted.stiffness.setConstant(1e9);
+  MechanismTickOptions options;
+  options.law.stiffness = LimitedGains(device, wanted).stiffness;
+  return options;
+}
+
+}  // namespace
+
+HeldTick::HeldTick(const std::string& example) : samples_(Wandering(&device_)) {
+  const Mechanism mechanism = ReadMechanism(std::string(VMECH_EXAMPLES) + "/" + example + ".yaml");
+  const int grasp = FindGrasp(mechanism, "handle");
+  tree_ = std::make_unique<KinematicTree>(BuildKinematicTree(mechanism));
+  const VectorXd q = ClosedStart(*tree_);
+  const MechanismTickOptions options = OptionsFor(device_);
+  TrackOptions track = options.track;
+  track.kinematics.stiffness = options.law.stiffness;
+  tick_ = std::make_unique<MechanismTick>(*tree_, grasp, q, device_, options);
+  tracker_ = std::make_unique<HandTracker>(*tree_, GraspFrameOf(*tree_, grasp), q, track);
+  dynamics_ =
+      std::make_unique<HandDynamics>(*tree_, GraspFrameOf(*tree_, grasp), options.law.stiffness, q);
+  safety_ = std::make_unique<SafetyFilter>(SafetyOptions{}, device_);
+  torques_ = std::make_unique<ArmTorques>(PostureOptions{}, device_.arm, device_.period,
+                                          device_.angular.resolution);
+  registration_ = GraspedAt(Matrix3d::Identity(), samples_[0].X_DH, tick_->GraspFrame());
+  channels_.resize(tick_->ChannelNames().size());
+}
+
+const MasterState& HeldTick::NextSample() {
+  if (next_ == samples_.size() - 1) forward_ = false;
+  if (next_ == 0) forward_ = true;
+  next_ += forward_ ? 1 : -1;
+  state_ = samples_[next_];
+  state_.sequence = ++sequence_;
+  return state_;
+}
+
+void HeldTick::Full() {
+  const MasterState& state = NextSample();
+  StepOn(state);
+  FilterOf(state);
+  torques_->Resolve(state, true, &command_);
+}
+
+void HeldTick::Step() {
+  StepOn(NextSample());
+}
+
+void HeldTick::Track() {
+  (void)tracker_->Advance(registration_.HandInWorld(NextSample().X_DH));
+}
+
+void HeldTick::Evaluate() {
+  dynamics_->SetPose(tick_->q());
+  (void)dynamics_->Evaluate(NextSample().V_DH, Vector6d::Ones());
+}
+
+void HeldTick::Filter() {
+  FilterOf(NextSample());
+}
+
+void HeldTick::Resolve() {
+  torques_->Resolve(NextSample(), true, &command_);
+}
+
+void HeldTick::StepOn(const MasterState& state) {
+  TickInput input;
+  input.X_WH = registration_.HandInWorld(state.X_DH);
+  input.fresh = true;
+  input.elapsed = device_.period;
+  input.state = &state;
+  wanted_ = tick_->Step(input, channels_);
+}
+
+void HeldTick::FilterOf(const MasterState& state) {
+  const SafetyOutput safe = safety_->Apply(
+      {Lifecycle::kActive, IoStatus::kOk, &state, wanted_.F_Ho_W, wanted_.stored_energy});
+  command_.F_Ho_D = safe.F_Ho_D;
+}
+
+}  // namespace vmech

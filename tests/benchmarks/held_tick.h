@@ -1,0 +1,54 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "vmech/hw_interface/arm_torques.h"
+#include "vmech/hw_interface/mechanism_tick.h"
+#include "vmech/hw_interface/safety_filter.h"
+
+namespace vmech {
+
+/// A mechanism of the examples in the hand of an operator who wanders a few centimetres at a
+/// simulated 7-joint arm with 16-bit encoders: the tick on the samples of that arm, whose own
+/// simulation costs nothing here. The hand goes its way whatever the mechanism allows, so that it
+/// pulls on the constraints all the time.
+class HeldTick {
+ public:
+  explicit HeldTick(const std::string& example);
+
+  /// All that a runner does between a sample and the torques: mechanism, safety filter, arm.
+  void Full();
+  // Its stages, each on the next sample. Track and Evaluate are parts of Step.
+  void Step();
+  void Track();
+  void Evaluate();
+  void Filter();
+  void Resolve();
+
+ private:
+  /// To and fro over the samples, with sequence numbers that go on.
+  const MasterState& NextSample();
+  void StepOn(const MasterState& state);
+  void FilterOf(const MasterState& state);
+
+  DeviceInfo device_;
+  std::vector<MasterState> samples_;
+  size_t next_ = 0;
+  bool forward_ = true;
+  MasterState state_;
+  std::uint64_t sequence_ = 0;
+  std::unique_ptr<KinematicTree> tree_;
+  std::unique_ptr<MechanismTick> tick_;
+  std::unique_ptr<HandTracker> tracker_;
+  std::unique_ptr<HandDynamics> dynamics_;
+  std::unique_ptr<SafetyFilter> safety_;
+  std::unique_ptr<ArmTorques> torques_;
+  Registration registration_;
+  TickOutput wanted_;
+  MasterCommand command_;
+  std::vector<double> channels_;
+};
+
+}  // namespace vmech
