@@ -67,6 +67,28 @@ const MatrixXd& ArmModel::MassMatrix() noexcept {
   return M_;
 }
 
+void ArmModel::Momenta(const double* v, double* momenta) noexcept {
+  const KinematicTree& tree = arm_->tree;
+  ForwardVelocities(tree, v, &ws_);
+  for (size_t i = 0; i < tree.nodes.size(); ++i) {
+    const TreeNode& node = tree.nodes[i];
+    NodeState<double>& s = ws_.nodes[i];
+    const Matrix3d& R = s.X_WB.R;
+    const Vector3d c = R * node.p_BoBcm;
+    const Vector3d linear = node.mass * (s.v + s.w.cross(c));
+    const Vector3d w_B = R.transpose() * s.w, angular_B = node.I_Bcm * w_B;
+    s.F_Bo = {linear, R * angular_B + c.cross(linear)};
+  }
+  for (size_t i = tree.nodes.size(); i-- > 0;) {
+    const NodeState<double>& s = ws_.nodes[i];
+    const int parent = tree.nodes[i].parent;
+    if (parent < 0) continue;
+    NodeState<double>& p = ws_.nodes[parent];
+    p.F_Bo += s.F_Bo.ShiftedBy(s.X_WB.p - p.X_WB.p);
+  }
+  GeneralisedForces(tree, ws_, momenta);
+}
+
 double ArmModel::PotentialEnergy() const noexcept {
   const Vector3d& gravity = arm_->tree.mechanism.gravity_W;
   double energy = 0;

@@ -46,6 +46,9 @@ class ArmModel {
   const VectorXd& GravityTorques() noexcept;
   /// M(q).
   const MatrixXd& MassMatrix() noexcept;
+  /// M(q) v, the joints' momenta, in one pass out and one back; `v` and `momenta` have joints()
+  /// entries.
+  void Momenta(const double* v, double* momenta) noexcept;
   /// - sum m g . p_cm [J], zero where every centre of gravity is at the height of Do.
   double PotentialEnergy() const noexcept;
   /// v' from the velocities, the joints' torques (motors and passive ones together) and the wrench

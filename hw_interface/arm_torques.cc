@@ -1,5 +1,10 @@
 #include "vmech/hw_interface/arm_torques.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
 #include "vmech/solvers/stopping_rule.h"
 
 namespace vmech {
@@ -13,16 +18,17 @@ ArmTorques::ArmTorques(const PostureOptions& options, std::shared_ptr<const ArmD
                        double period, double resolution)
     : options_(options),
       arm_(std::move(arm)),
-      velocity_(arm_.joints(), AdaptiveWindow(period, std::max(resolution, 1e-9))),
+      velocity_(arm_.joints(), KalmanEstimator(period, std::max(resolution, 1e-9))),
       posture_torque_(VectorXd::Zero(arm_.joints())),
       torque_(posture_torque_),
-      M_inverse_Jt_(MatrixXd::Zero(arm_.joints(), 6)),
-      factor_(arm_.joints()) {
+      reduced_(arm_.J()),
+      free_(MatrixXd::Zero(arm_.joints(), arm_.joints())),
+      momenta_(free_) {
   options.Validate();
 }
 
 void ArmTorques::Reset() noexcept {
-  for (AdaptiveWindow& window : velocity_) window.Reset();
+  for (KalmanEstimator& filter : velocity_) filter.Reset();
   posture_torque_.setZero();
 }
 
@@ -33,18 +39,58 @@ void ArmTorques::Resolve(const MasterState& state, bool fresh, MasterCommand* co
     const double v = velocity_[i].Update(state.q[i]).v;
     posture_torque_[i] = options_.stiffness * (q_0[i] - state.q[i]) - options_.damping * v;
   }
-  factor_.compute(arm_.MassMatrix());
-  M_inverse_Jt_ = arm_.J().transpose();
-  factor_.solveInPlace(M_inverse_Jt_);
-  yielding_.noalias() = arm_.J() * M_inverse_Jt_;
-  // At a singular posture nothing resists in some direction; a share of 1e-9 there is harmless.
-  yielding_.diagonal().array() += 1e-9 * yielding_.trace();
-  // What tau_p would do at the handle: Jbar' tau_p = (J M^-1 J')^-1 J M^-1 tau_p.
-  Vector6d felt = M_inverse_Jt_.transpose() * posture_torque_;
-  yielding_.llt().solveInPlace(felt);
-  torque_ = posture_torque_;
-  torque_.noalias() += arm_.J().transpose() * (command->F_Ho_D - felt);
+  torque_.noalias() = arm_.J().transpose() * command->F_Ho_D;
+  const int count = FindFreeMotions();
+  for (int k = 0; k < count; ++k) {
+    auto n_k = free_.col(k);
+    auto p_k = momenta_.col(k);
+    for (int i = 0; i < k; ++i) {
+      n_k -= free_.col(i) * (momenta_.col(i).dot(n_k) / momenta_.col(i).dot(free_.col(i)));
+    }
+    arm_.Momenta(n_k.data(), p_k.data());
+    torque_ += p_k * (n_k.dot(posture_torque_) / n_k.dot(p_k));
+  }
   for (int i = 0; i < arm_.joints(); ++i) command->torque[i] = torque_[i];
+}
+
+/// Motions that leave the handle where it is, by Gauss-Jordan elimination with full pivoting;
+/// writes them to free_ and returns how many there are.
+int ArmTorques::FindFreeMotions() noexcept {
+  constexpr double kSingular = 1e-9;  // pivot over the largest: the handle cannot go that way
+  const int n = arm_.joints();
+  reduced_ = arm_.J();
+  std::array<int, kMaxArmJoints> order;  // pivots' columns first
+  std::iota(order.begin(), order.begin() + n, 0);
+  int rank = 0;
+  for (double largest = 0; rank < std::min(6, n); ++rank) {
+    int row = rank, column = rank;
+    double pivot = 0;
+    for (int j = rank; j < n; ++j) {
+      for (int i = rank; i < 6; ++i) {
+        const double size = std::abs(reduced_(i, order[j]));
+        if (size > pivot) pivot = size, row = i, column = j;
+      }
+    }
+    largest = std::max(largest, pivot);
+    if (!(pivot > kSingular * largest)) break;
+    std::swap(order[rank], order[column]);
+    reduced_.row(rank).swap(reduced_.row(row));
+    const double inverse = 1 / reduced_(rank, order[rank]);
+    for (int j = rank; j < n; ++j) {
+      double* const a = &reduced_(0, order[j]);
+      a[rank] *= inverse;
+      if (j == rank) continue;
+      for (int i = 0; i < 6; ++i) {
+        if (i != rank) a[i] -= reduced_(i, order[rank]) * a[rank];
+      }
+    }
+  }
+  for (int k = 0; k < n - rank; ++k) {
+    free_.col(k).setZero();
+    free_(order[rank + k], k) = 1;
+    for (int i = 0; i < rank; ++i) free_(order[i], k) = -reduced_(i, order[rank + k]);
+  }
+  return n - rank;
 }
 
 }  // namespace vmech

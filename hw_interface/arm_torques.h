@@ -17,11 +17,12 @@ struct PostureOptions {
 /// Joint torques of an arm for a wrench at the handle (paper eq. 12 with the sign of F on the
 /// hand), and a torque towards the nominal posture in the null space of a redundant arm:
 ///
-///   tau = J' F_Ho + (1 - J' Jbar') tau_p,   Jbar = M^-1 J' (J M^-1 J')^-1,
-///   tau_p = k (q_0 - q) - d v.
+///   tau = J' F_Ho + sum_k M n_k (n_k' tau_p) / (n_k' M n_k),   tau_p = k (q_0 - q) - d v,
 ///
-/// With Jbar the dynamically consistent inverse [Khatib 1987], tau_p does not accelerate the
-/// handle. Joint velocities come from an adaptive window. No allocation after construction.
+/// n_k a basis of the null space of J, orthogonal in the metric M. The sum is what the dynamically
+/// consistent inverse Jbar = M^-1 J' (J M^-1 J')^-1 [Khatib 1987] leaves of tau_p, (1 - J' Jbar')
+/// tau_p: it does not accelerate the handle, since J M^-1 M n_k = 0. Joint velocities come from
+/// Kalman filters. No allocation after construction.
 class ArmTorques {
  public:
   /// `resolution` of the encoders [rad]. @throws as Validate and ArmModel.
@@ -35,11 +36,12 @@ class ArmTorques {
  private:
   PostureOptions options_;
   ArmModel arm_;
-  std::vector<AdaptiveWindow> velocity_;
+  int FindFreeMotions() noexcept;
+
+  std::vector<KalmanEstimator> velocity_;
   VectorXd posture_torque_, torque_;
-  MatrixXd M_inverse_Jt_;  // [joints, 6]
-  Matrix6d yielding_;      // J M^-1 J'
-  Eigen::LLT<MatrixXd> factor_;
+  MatrixXd reduced_;         // J, reduced to a unit matrix in the columns of its pivots
+  MatrixXd free_, momenta_;  // n_k and M n_k, column by column
 };
 
 }  // namespace vmech

@@ -85,7 +85,9 @@ TickOutput MechanismTick::Step(const TickInput& input, std::span<double> channel
   const Vector6d e1 = HandError(X_WG_, input.X_WH);
   if (input.fresh) {
     motion_.Update(X_WG_, static_cast<int>(std::lround(input.elapsed / period_)));
-    for (int i = 0; i < 6; ++i) slip_rate_[i] = slip_[i].Update(e1[i]).v;
+    if (options_.law.kind != ContactKind::kLinear) {
+      for (int i = 0; i < 6; ++i) slip_rate_[i] = slip_[i].Update(e1[i]).v;
+    }
   }
   TickOutput out;
   if (!dynamics_.Evaluate(motion_.V(), motion_.A(), options_.inertia)) {
