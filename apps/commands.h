@@ -64,8 +64,10 @@ struct HapticArguments {
   std::string grip = "relaxed";      ///< of the simulated operator
   double rate = 1000;                ///< of the simulated master [Hz]
   double seconds = 20;               ///< 0: until interrupted
-  double stiffness = 0;              ///< of the constraint [N/m]; 0: what the device allows
-  double inertia = 0;                ///< share of it that is felt; 0: what the device allows
+  std::string coupling = "virtual";  ///< or "paper"
+  double scale = 0;                  ///< virtual: of all forces; 0: what the device allows
+  double stiffness = 0;              ///< paper: of the constraint [N/m]; 0: what the device allows
+  double inertia = 0;                ///< paper: share that is felt; 0: what the device allows
   std::filesystem::path record;      ///< empty: no recording
   bool free_running = false;         ///< as fast as it computes
   bool quiet = false;

@@ -12,7 +12,6 @@
 #include "vmech/apps/haptic_session.h"
 #include "vmech/hw_interface/runner.h"
 #include "vmech/hw_interface/stability.h"
-#include "vmech/hw_interface/stable_inertia.h"
 #include "vmech/kinematics/assembly.h"
 #include "vmech/kinematics/forward_kinematics.h"
 
@@ -88,22 +87,16 @@ SpanningTreeOptions KeepSprings(const Mechanism& mechanism) {
   return options;
 }
 
-RunnerOptions OptionsOf(const HapticArguments& arguments, const Matrix3d& R_WD) {
+RunnerOptions OptionsOf(const HapticArguments& arguments, const Matrix3d& R_WD,
+                        const SafetyOptions& safety) {
   RunnerOptions options;
   options.seconds = arguments.seconds;
   options.record = !arguments.record.empty();
   options.post_mortem = arguments.file.stem().string() + "-fault.csv";
   options.R_WD = R_WD;
+  options.safety = safety;
   if (arguments.free_running) options.realtime.reset();
   return options;
-}
-
-void PrintReport(const RunSummary& summary, const KinematicTree& tree, const MechanismTick& tick) {
-  fmt::print("{}  {}\n", summary.FullReport(), tick.tracking().BriefReport());
-  for (size_t j = 0; j < tree.mechanism.joints.size(); ++j) {
-    fmt::print("  largest force at {:<16} {:>10.4g} N\n", tree.mechanism.joints[j].name,
-               tick.peak_forces()[j]);
-  }
 }
 
 }  // namespace
@@ -124,21 +117,16 @@ int RunHaptic(const HapticArguments& arguments) {
                         subject.law};
   const std::unique_ptr<Master> master = MakeMaster(request);
   master->Configure();
-  MechanismTickOptions options;
-  options.law = LawFor(master->info(), arguments.stiffness);
-  options.inertia = arguments.inertia > 0 ? arguments.inertia
-                                          : StableInertiaShare(tree, grasp, q, master->info());
-  MechanismTick tick(tree, subject.grasp, q, master->info(), options);
+  const Rendering rendering =
+      MakeRendering({arguments.coupling, arguments.scale, arguments.stiffness, arguments.inertia},
+                    tree, subject.grasp, q, master->info());
   WallClock wall;
   FreeRunningClock free;
   LoopClock* clock = &wall;
   if (arguments.free_running) clock = &free;
-  Runner runner(OptionsOf(arguments, request.R_WD), master.get(), &tick, clock);
-  if (!arguments.quiet) {
-    fmt::print("{}", BoundsReport(master->info()));
-    fmt::print("constraint: {:.4g} N/m, {:.4g} N m/rad; {:.3g} % of the inertia\n",
-               options.law.stiffness[0], options.law.stiffness[3], 100 * options.inertia);
-  }
+  Runner runner(OptionsOf(arguments, request.R_WD, rendering.safety), master.get(),
+                rendering.tick.get(), clock);
+  if (!arguments.quiet) fmt::print("{}{}", BoundsReport(master->info()), rendering.report);
   RunSummary summary;
   {
     const InterruptScope interrupt(&runner);
@@ -146,7 +134,7 @@ int RunHaptic(const HapticArguments& arguments) {
     summary = runner.Run();
   }
   if (!arguments.record.empty()) WriteRecording(arguments.record, runner.Kept());
-  if (!arguments.quiet) PrintReport(summary, tree, tick);
+  if (!arguments.quiet) fmt::print("{}{}", summary.FullReport(), rendering.tick->FullReport());
   return summary.status == RunStatus::kFault ? kNoSolution : kSuccess;
 }
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "vmech/apps/study_reader.h"
+#include "vmech/hw_interface/coupling_choice.h"
 #include "vmech/hw_interface/plugin_master.h"
 #include "vmech/hw_interface/replay_master.h"
 #include "vmech/hw_interface/spacenav_master.h"
@@ -90,7 +91,48 @@ std::unique_ptr<Master> MakeUdp(const std::string& address) {
   return std::make_unique<UdpMaster>(options);
 }
 
+Rendering MakeCoupled(const RenderingRequest& request, const KinematicTree& tree, int grasp,
+                      const VectorXd& q, const DeviceInfo& device) {
+  CoupledTickOptions options;
+  options.smoothing = 2 * device.period;
+  const CouplingChoice choice =
+      ChooseCoupling(tree, GraspFrameOf(tree, grasp), q, device, options.smoothing);
+  options.coupling = choice.coupling;
+  options.scale = request.scale > 0 ? request.scale : choice.scale;
+  const Vector6d& K = choice.coupling.stiffness;
+  std::string report = fmt::format(
+      "virtual coupling: {:.4g} N/m, {:.4g} N m/rad; inertia {:.3g} times the handle's, "
+      "weight at the hand {:.3g} N\n",
+      K[0], K[3], choice.inertia_ratio, choice.weight);
+  if (options.scale != 1) {
+    report += fmt::format("forces are felt at {:.3g} % of the mechanism's{}\n", 100 * options.scale,
+                          request.scale > 0 ? "" : ": what this device can render (--scale)");
+  }
+  return {std::make_unique<CoupledTick>(tree, grasp, q, device.period, options), choice.Safety(),
+          std::move(report)};
+}
+
+Rendering MakePaper(const RenderingRequest& request, const KinematicTree& tree, int grasp,
+                    const VectorXd& q, const DeviceInfo& device) {
+  MechanismTickOptions options;
+  options.law = LawFor(device, request.stiffness);
+  options.inertia = request.inertia > 0
+                        ? request.inertia
+                        : StableInertiaShare(tree, GraspFrameOf(tree, grasp), q, device);
+  std::string report =
+      fmt::format("constraint: {:.4g} N/m, {:.4g} N m/rad; {:.3g} % of the inertia\n",
+                  options.law.stiffness[0], options.law.stiffness[3], 100 * options.inertia);
+  return {std::make_unique<MechanismTick>(tree, grasp, q, device, options), SafetyOptions{},
+          std::move(report)};
+}
+
 }  // namespace
+
+Rendering MakeRendering(const RenderingRequest& request, const KinematicTree& tree, int grasp,
+                        const VectorXd& q, const DeviceInfo& device) {
+  const bool paper = request.coupling == "paper";
+  return (paper ? MakePaper : MakeCoupled)(request, tree, grasp, q, device);
+}
 
 HapticSubject ReadSubject(const std::filesystem::path& file, const std::string& grasp) {
   HapticSubject subject =

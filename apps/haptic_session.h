@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "vmech/hw_interface/coupled_tick.h"
 #include "vmech/hw_interface/mechanism_tick.h"
 #include "vmech/hw_interface/simulated_master.h"
 #include "vmech/kinematics/motion_law.h"
@@ -46,5 +47,24 @@ std::unique_ptr<Master> MakeMaster(const MasterRequest& request);
 /// that is lower. A device without force gets a stiffness that only weighs positions against
 /// rotations.
 ContactLaw LawFor(const DeviceInfo& device, double stiffness);
+
+/// How a mechanism is rendered; zeros leave it to the device.
+struct RenderingRequest {
+  std::string coupling = "virtual";   ///< or "paper"
+  double scale = 0;                   ///< virtual: of all forces
+  double stiffness = 0, inertia = 0;  ///< paper: of the constraint [N/m]; share of the inertia
+};
+
+/// The virtual side of a session, what it asks of the safety filter, and both in words.
+struct Rendering {
+  std::unique_ptr<Tick> tick;
+  SafetyOptions safety;
+  std::string report;
+};
+
+/// A mechanism held at its grasp in the closed pose q, for a device. Keeps a reference to the tree.
+/// @throws std::invalid_argument as the ticks.
+Rendering MakeRendering(const RenderingRequest& request, const KinematicTree& tree, int grasp,
+                        const VectorXd& q, const DeviceInfo& device);
 
 }  // namespace vmech

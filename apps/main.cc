@@ -163,12 +163,24 @@ void AddHaptic(CLI::App* app, vmech::HapticArguments* haptic) {
       ->check(CLI::Range(0.0, 1e6, "0..1e6"))
       ->capture_default_str();
   command
+      ->add_option("--coupling", haptic->coupling,
+                   "virtual: the mechanism moves by itself, on a spring at the hand; paper: it "
+                   "follows the hand, and inertia comes from measured accelerations")
+      ->check(CLI::IsMember({"virtual", "paper"}))
+      ->capture_default_str();
+  command
+      ->add_option("--scale", haptic->scale,
+                   "virtual: force felt over the mechanism's own (default: 1, or what the device "
+                   "can render)")
+      ->check(CLI::Range(1e-6, 1.0, "1e-6..1"));
+  command
       ->add_option("--stiffness", haptic->stiffness,
-                   "of the constraint [N/m], at most what the device can render (default: that)")
+                   "paper: of the constraint [N/m], at most what the device can render (default: "
+                   "that)")
       ->check(CLI::Range(0.0, 1e7, "0..1e7"));
   command
       ->add_option("--inertia", haptic->inertia,
-                   "share of the inertia that is felt (default: what the device can render)")
+                   "paper: share of the inertia that is felt (default: what the device can render)")
       ->check(CLI::Range(0.0, 1.0, "0..1"));
   command->add_option("--record", haptic->record, "write every tick to this file")
       ->type_name("FILE");

@@ -3,8 +3,7 @@
 #include <Eigen/Cholesky>
 #include <vector>
 
-#include "vmech/kinematics/inverse_kinematics.h"
-#include "vmech/kinematics/tree_workspace.h"
+#include "vmech/dynamics/held_pose.h"
 
 namespace vmech {
 
@@ -59,16 +58,14 @@ class HandDynamics {
   void SolveMotion(const Vector6d& b, const VectorXd& d, VectorXd* x) noexcept;
   void SolveWrenches() noexcept;
   void PassiveForces() noexcept;
-  void LoadJoints() noexcept;
   void RefuseIdleFreedoms() const;
 
   const KinematicTree& tree_;
   GraspFrame grasp_;
   Vector6d K_;
   VectorXd W_;  // per loop equation
-  TreeWorkspace<double> ws_;
-  Posed X_WG_;
-  MatrixXd J_, KJ_, C_, WC_, H_;
+  HeldPose pose_;
+  MatrixXd KJ_, WC_, H_;
   Eigen::LLT<MatrixXd> factor_;
   VectorXd q_, v_, felt_v_, vdot_, tau_, x_, mu_, d_, Cx_, none_;
   std::vector<Wrenchd> applied_, joints_;

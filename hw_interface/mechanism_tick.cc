@@ -44,8 +44,7 @@ void MechanismTickOptions::Validate() const {
 
 MechanismTick::MechanismTick(const KinematicTree& tree, int grasp, const VectorXd& q,
                              const DeviceInfo& device, const MechanismTickOptions& options)
-    : tree_(tree),
-      options_(options),
+    : options_(options),
       tracker_(tree, GraspFrameOf(tree, grasp), q, InTheMetricOf(options.law, options.track)),
       dynamics_(tree, GraspFrameOf(tree, grasp), options.law.stiffness, q),
       motion_(options.estimator, device.period, Resolution(device.linear),
@@ -54,7 +53,7 @@ MechanismTick::MechanismTick(const KinematicTree& tree, int grasp, const VectorX
             SlipOf(device, true),  SlipOf(device, true),  SlipOf(device, true)},
       period_(device.period),
       X_WG_(dynamics_.SetPose(q)),
-      peak_forces_(tree.mechanism.joints.size(), 0.0) {
+      peaks_(tree.mechanism) {
   options.Validate();
   // A point grasp returns no moments (paper section 4).
   if (tree.mechanism.grasps[grasp].kind == GraspKind::kPoint) {
@@ -65,10 +64,7 @@ MechanismTick::MechanismTick(const KinematicTree& tree, int grasp, const VectorX
 
 std::vector<std::string> MechanismTick::ChannelNames() const {
   std::vector<std::string> names{"off_position", "off_rotation", "dynamic_force", "track"};
-  for (const Joint& joint : tree_.mechanism.joints) {
-    if (names.size() == kMaxChannels) break;
-    names.push_back("force " + joint.name);
-  }
+  peaks_.AppendNames(&names);
   return names;
 }
 
@@ -76,7 +72,7 @@ void MechanismTick::Reset() noexcept {
   motion_.Reset();
   for (AdaptiveWindow& window : slip_) window.Reset();
   slip_rate_.setZero();
-  std::fill(peak_forces_.begin(), peak_forces_.end(), 0.0);
+  peaks_.Reset();
 }
 
 TickOutput MechanismTick::Step(const TickInput& input, std::span<double> channels) noexcept {
@@ -108,11 +104,11 @@ void MechanismTick::Report(const Vector6d& e1, std::span<double> channels) noexc
   channels[1] = e1.tail<3>().norm();
   channels[2] = dynamics_.w_d().head<3>().norm();
   channels[3] = static_cast<double>(track_);
-  for (size_t j = 0; j < peak_forces_.size(); ++j) {
-    const double force = dynamics_.joints()[j].force.norm();
-    peak_forces_[j] = std::max(peak_forces_[j], force);
-    if (kOwnChannels + j < channels.size()) channels[kOwnChannels + j] = force;
-  }
+  peaks_.Add(dynamics_.joints(), channels.subspan(kOwnChannels));
+}
+
+std::string MechanismTick::FullReport() const {
+  return "  " + tracking().BriefReport() + "\n" + peaks_.Report();
 }
 
 }  // namespace vmech

@@ -2,6 +2,7 @@
 
 #include "vmech/dynamics/hand_dynamics.h"
 #include "vmech/hw_interface/contact_law.h"
+#include "vmech/hw_interface/joint_peaks.h"
 #include "vmech/hw_interface/pose_estimator.h"
 #include "vmech/hw_interface/tick.h"
 #include "vmech/kinematics/hand_tracker.h"
@@ -11,7 +12,8 @@ namespace vmech {
 struct MechanismTickOptions {
   ContactLaw law;  ///< its stiffness is also the metric in which the mechanism follows the hand
   /// Share of the mechanism's inertia that the hand feels, in [0, 1]: what a measured acceleration
-  /// renders. Lower it where the mechanism is heavier than the device (RenderingBounds).
+  /// renders. Lower it where the mechanism is heavier than the device (StableInertiaShare), or take
+  /// CoupledTick.
   double inertia = 1;
   PoseEstimatorOptions estimator;
   TrackOptions track;  ///< its stiffness is set from the law
@@ -44,12 +46,12 @@ class MechanismTick : public Tick {
   const HandDynamics& dynamics() const noexcept { return dynamics_; }
   const TrackSummary& tracking() const noexcept { return tracker_.summary(); }
   /// Largest force of each joint since the hand took hold [N].
-  const std::vector<double>& peak_forces() const noexcept { return peak_forces_; }
+  const std::vector<double>& peak_forces() const noexcept { return peaks_.forces(); }
+  std::string FullReport() const override;
 
  private:
   void Report(const Vector6d& e1, std::span<double> channels) noexcept;
 
-  const KinematicTree& tree_;
   MechanismTickOptions options_;
   HandTracker tracker_;
   HandDynamics dynamics_;
@@ -59,7 +61,7 @@ class MechanismTick : public Tick {
   TrackStatus track_ = TrackStatus::kNotRun;
   double period_;
   Posed X_WG_;
-  std::vector<double> peak_forces_;
+  JointPeaks peaks_;
 };
 
 }  // namespace vmech

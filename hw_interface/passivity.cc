@@ -9,6 +9,8 @@ namespace vmech {
 void PassivityOptions::Validate() const {
   CheckRange("PassivityOptions", "credit", credit, 0, 10);
   CheckRange("PassivityOptions", "lever", lever, 1e-3, 10);
+  CheckRange("PassivityOptions", "grace", grace, 0, 1);
+  CheckRange("PassivityOptions", "forgiven", forgiven, 0, 10);
   CheckRange("PassivityOptions", "largest_debt", largest_debt, 1e-4, 100);
 }
 
@@ -27,6 +29,8 @@ PassivityController::PassivityController(const PassivityOptions& options, const 
 
 void PassivityController::Reset() noexcept {
   energy_ = 0;
+  V_.setZero();
+  mean_V_.setZero();
   knows_stored_ = false;
 }
 
@@ -36,19 +40,27 @@ void PassivityController::Observe(const Vector6d& F_Ho_D, const Vector6d& dX, do
   knows_stored_ = true;
   const double own_loss = dX.dot(own_damping_.cwiseProduct(dX)) / elapsed;
   energy_ += own_loss - F_Ho_D.dot(dX) - (stored_energy - stored_);
+  if (energy_ < 0) energy_ = std::min(0.0, energy_ + options_.forgiven * elapsed);
   energy_ = std::min(energy_, options_.credit);
   stored_ = stored_energy;
+  constexpr double kMean = 5e-3;  // [s]
+  V_ = dX / elapsed;
+  mean_V_ += std::min(1.0, elapsed / kMean) * (V_ - mean_V_);
 }
 
-Vector6d PassivityController::Control(const Vector6d& F_Ho_D, const Vector6d& V) const noexcept {
+Vector6d PassivityController::Control(const Vector6d& F_Ho_D) const noexcept {
   constexpr double kAtRest = 1e-12;  // [m^2/s^2]: no motion that could dissipate
   if (!options_.enabled || energy_ >= 0) return F_Ho_D;
-  const Vector6d faded = std::max(0.0, 1 + energy_ / options_.largest_debt) * F_Ho_D;
+  const double debt = -energy_;
+  const double beyond = std::max(0.0, debt - options_.grace);
+  const Vector6d faded = std::max(0.0, 1 - beyond / options_.largest_debt) * F_Ho_D;
+  const double share = debt < options_.grace ? debt / options_.grace : 1;
+  const Vector6d V = mean_V_ + share * (V_ - mean_V_);
   const double speed2 = V.dot(weight_.cwiseProduct(V));
   if (speed2 < kAtRest) return faded;
   const double driving = std::max(0.0, faded.dot(V) / speed2);
-  const double alpha = std::min(-energy_ / (period_ * speed2), max_damping_);
-  return faded - (driving + alpha) * weight_.cwiseProduct(V);
+  const double alpha = std::min(debt / (period_ * speed2), max_damping_);
+  return faded - share * (driving + alpha) * weight_.cwiseProduct(V);
 }
 
 }  // namespace vmech

@@ -11,7 +11,13 @@ struct PassivityOptions {
   double credit = 2e-3;
   /// Lever that weighs rotations against translations [m], in [0.001, 10].
   double lever = 0.1;
-  /// Debt at which nothing but damping is left of the wrench [J], in [1e-4, 100].
+  /// Debt up to which the controller acts in proportion, and leaves the wrench at rest alone [J],
+  /// in [0, 1]. Encoder steps behind a stiff spring look like energy: raise it if sound motions
+  /// feel dull; absurd gains then trip sooner.
+  double grace = 0;
+  /// Debt that is forgiven per second [W], in [0, 10], for the same reason.
+  double forgiven = 0;
+  /// Debt beyond the grace at which nothing but damping is left of the wrench [J], in [1e-4, 100].
   double largest_debt = 0.1;
 
   /// @throws std::invalid_argument naming field, value and range.
@@ -25,14 +31,16 @@ struct PassivityOptions {
 ///
 /// dx_k = x_k - x_k-1 the measured motion, F the wrench at work meanwhile, b the handle's own
 /// damping, which pays for what sampling makes of a stiff spring, S the energy that the virtual
-/// mechanism says it stores (kinetic, potential, springs; constant if unknown). While E < 0 the
-/// wrench fades with the debt, loses its part along the motion that would drive the hand, and gains
-/// damping
+/// mechanism says it stores (kinetic, potential, springs; constant if unknown); a debt is forgiven
+/// slowly. While E < 0 the wrench loses its part along the motion that would drive the hand, gains
+/// damping, and fades with what the debt has beyond the grace E_g,
 ///
-///   F <- (1 + E/E_largest) F - max(0, F'V/V'WV) W V - alpha W V,   W = diag(1, lever^2),
+///   F <- f F - s (max(0, f F'V/V'WV) + alpha) W V,   W = diag(1, lever^2),
+///   s = min(1, -E/E_g),   f = 1 + min(0, E + E_g)/E_largest,
 ///
 /// alpha = -E / (T V'WV), at most what the handle's mass takes without being thrown back: m / (2 T
-/// + 4 delay).
+/// + 4 delay). V is the twist of the last sample; within the grace the less of it, and the more of
+/// its mean over 5 ms, the smaller the debt: encoder steps at rest are no motion.
 class PassivityController {
  public:
   /// @throws std::invalid_argument as Validate.
@@ -44,8 +52,8 @@ class PassivityController {
   /// displacement dX = [dp; dr], the virtual side's stored energy now.
   void Observe(const Vector6d& F_Ho_D, const Vector6d& dX, double elapsed,
                double stored_energy) noexcept;
-  /// The wrench that keeps the peace for the next period; `V` [v; w] the handle's measured twist.
-  Vector6d Control(const Vector6d& F_Ho_D, const Vector6d& V) const noexcept;
+  /// The wrench that keeps the peace for the next period.
+  Vector6d Control(const Vector6d& F_Ho_D) const noexcept;
 
   double energy() const noexcept { return energy_; }  ///< E [J], at most the credit
 
@@ -55,6 +63,7 @@ class PassivityController {
   double max_damping_;  // alpha [N s/m]
   Vector6d weight_;
   Vector6d own_damping_;  // b
+  Vector6d V_ = Vector6d::Zero(), mean_V_ = Vector6d::Zero();
   double energy_ = 0;
   double stored_ = 0;
   bool knows_stored_ = false;

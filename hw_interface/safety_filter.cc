@@ -62,6 +62,7 @@ SafetyFilter::SafetyFilter(const SafetyOptions& options, const DeviceInfo& info)
       delay_(info.delay),
       passivity_(options.passivity, info) {
   sent_.fill(Vector6d::Zero());
+  withheld_.fill(Vector6d::Zero());
 }
 
 void SafetyFilter::Restart() noexcept {
@@ -80,6 +81,7 @@ SafetyOutput SafetyFilter::Apply(const SafetyInput& input) noexcept {
   SafetyOutput out;
   out.sequence = ++counters_.ticks;
   sent_[out.sequence % kMemory].setZero();
+  withheld_[out.sequence % kMemory].setZero();
   out.off = Gate(input);
   if (out.off == ForceOff::kNone) {
     if (!open_) Restart();
@@ -135,12 +137,10 @@ void SafetyFilter::Observe(const SafetyInput& input) noexcept {
   if (has_pose_) {
     const Vector6d dX = HandError(X_last_, state.X_DH);
     const double elapsed = static_cast<double>(state.sequence - last_sequence_) * period_;
-    V_ = dX / elapsed;
     passivity_.Observe(WrenchAtWork(state), dX, elapsed, input.stored_energy);
     constexpr double kSmoothing = 5e-3;  // [s]: single encoder steps do not trip
-    smooth_V_ += std::min(1.0, elapsed / kSmoothing) * (V_ - smooth_V_);
+    smooth_V_ += std::min(1.0, elapsed / kSmoothing) * (dX / elapsed - smooth_V_);
   } else {
-    V_.setZero();
     smooth_V_.setZero();
     passivity_.Observe(Vector6d::Zero(), Vector6d::Zero(), period_, input.stored_energy);
   }
@@ -149,14 +149,18 @@ void SafetyFilter::Observe(const SafetyInput& input) noexcept {
   has_pose_ = true;
 }
 
+/// With what somebody else carries during the soft start.
 Vector6d SafetyFilter::WrenchAtWork(const MasterState& state) const noexcept {
-  if (state.valid & kSensesAppliedWrench) return state.applied_F_Ho_D;
   const auto delay = static_cast<std::uint64_t>(std::llround(delay_ / period_));
   const std::uint64_t latest = counters_.ticks - 1;  // this tick's is still to come
   const std::uint64_t at_work =
       state.valid & kSensesEcho ? state.command_echo : latest - std::min(latest, delay);
-  if (at_work == 0 || at_work > latest || latest - at_work >= kMemory) return Vector6d::Zero();
-  return sent_[at_work % kMemory];
+  const bool known = at_work > 0 && at_work <= latest && latest - at_work < kMemory;
+  Vector6d wrench = Vector6d::Zero();
+  if (known) wrench = withheld_[at_work % kMemory];
+  if (state.valid & kSensesAppliedWrench) return wrench + state.applied_F_Ho_D;
+  if (known) wrench += sent_[at_work % kMemory];
+  return wrench;
 }
 
 ForceOff SafetyFilter::Trip() const noexcept {
@@ -168,14 +172,19 @@ ForceOff SafetyFilter::Trip() const noexcept {
 
 void SafetyFilter::Ramp(SafetyOutput* out) noexcept {
   if (opened_for_ < options_.soft_start) {
-    out->F_Ho_D *= opened_for_ / options_.soft_start;
+    const double share = opened_for_ / options_.soft_start;
+    if (options_.carried_start) {
+      const double within = Shrink(out->F_Ho_D, options_.max_force, options_.max_moment);
+      withheld_[out->sequence % kMemory] = (1 - share) * within * out->F_Ho_D;
+    }
+    out->F_Ho_D *= share;
     out->stages |= kRamped;
   }
   opened_for_ += period_;
 }
 
 void SafetyFilter::Damp(SafetyOutput* out) noexcept {
-  const Vector6d damped = passivity_.Control(out->F_Ho_D, V_);
+  const Vector6d damped = passivity_.Control(out->F_Ho_D);
   if (damped == out->F_Ho_D) return;
   out->F_Ho_D = damped;
   out->stages |= kDamped;

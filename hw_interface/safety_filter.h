@@ -32,6 +32,9 @@ inline constexpr int kSafetyStages = 4;
 
 struct SafetyOptions {
   double soft_start = 0.5;   ///< ramp from nothing to the whole wrench [s], in [0, 10]
+  /// Count what the soft start withholds as carried by somebody else: for a mechanism that moves by
+  /// itself and gets the whole from the start. False: the hand pays for what it feels only.
+  bool carried_start = false;
   int hold_periods = 5;      ///< samples that may be missing before the force goes, in [0, 1000]
   double max_force = 0;      ///< [N], in [0, 1e4]; 0: the device's peak
   double max_moment = 0;     ///< [N m], in [0, 1e3]; 0: the device's peak
@@ -124,10 +127,9 @@ class SafetyFilter {
   double opened_for_ = 0;  // [s]
   std::uint64_t last_sequence_ = 0;
   Posed X_last_;
-  Vector6d V_ = Vector6d::Zero();         // over the last sample
-  Vector6d smooth_V_ = Vector6d::Zero();  // for the trip
-  Vector6d last_ = Vector6d::Zero();      // the last wrench that went out
-  std::array<Vector6d, kMemory> sent_;    // by sequence
+  Vector6d smooth_V_ = Vector6d::Zero();           // for the trip
+  Vector6d last_ = Vector6d::Zero();               // the last wrench that went out
+  std::array<Vector6d, kMemory> sent_, withheld_;  // by sequence
 };
 
 }  // namespace vmech

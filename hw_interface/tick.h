@@ -61,6 +61,8 @@ class Tick {
   /// `channels` has as many entries as there are names.
   [[nodiscard]] virtual TickOutput Step(const TickInput& input,
                                         std::span<double> channels) noexcept = 0;
+  /// What became of the mechanism, in lines; nothing by default.
+  virtual std::string FullReport() const { return {}; }
 };
 
 }  // namespace vmech

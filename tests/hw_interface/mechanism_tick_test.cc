@@ -8,7 +8,7 @@
 #include "vmech/hw_interface/runner.h"
 #include "vmech/hw_interface/simulated_master.h"
 #include "vmech/hw_interface/stability.h"
-#include "vmech/hw_interface/stable_inertia.h"
+#include "vmech/hw_interface/coupling_choice.h"
 #include "vmech/kinematics/assembly.h"
 #include "vmech/kinematics/rotation_error.h"
 

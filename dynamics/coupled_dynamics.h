@@ -1,0 +1,100 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <limits>
+#include <vector>
+
+#include "vmech/dynamics/composite_inertia.h"
+#include "vmech/dynamics/held_pose.h"
+
+namespace vmech {
+
+/// Spring and damper between a hand and the grasp frame, diagonal, world axes. Beyond the largest
+/// force and moment the spring slips along, in its direction: the mechanism never gets more than
+/// the device can give the hand.
+struct HandCoupling {
+  Vector6d stiffness = Vector6d::Zero();                        ///< K [N/m], [N m/rad], >= 0
+  Vector6d damping = Vector6d::Zero();                          ///< B [N s/m], [N m s/rad], >= 0
+  double max_force = std::numeric_limits<double>::infinity();   ///< [N], > 0
+  double max_moment = std::numeric_limits<double>::infinity();  ///< [N m], > 0
+};
+
+/// What a step of CoupledDynamics came to.
+enum class CoupledStatus {
+  kMoved,
+  kStopped,  ///< the loops do not close where the step leads: the pose stays, at rest
+  kFailed,   ///< a value is not finite; the pose stays, the wrenches are undefined
+};
+
+/// Forward dynamics of a mechanism that a hand holds by a spring and a damper: it moves by its own
+/// equations of motion, a step of T at a time, so that no acceleration of the hand is needed and
+/// every freedom takes part, whether the grasp reaches it or not [Colgate et al. 1995, virtual
+/// coupling]. With the hand's error e1 and twist V_H, coupling, joint springs, friction and limits
+/// taken at the end of the step,
+///
+///   M (v+ - v)/T + h = J' w - C' mu + passive(v+),   C v+ = -T C' v,
+///   w = K (e1 - T J v+) + B (V_H - J v+),            q+ = q (+) T v+, loops closed,
+///
+/// that is (M/T + J'(B + T K) J + ..) v+ = M v/T - h + J'(K e1 + B V_H) - C' mu: what the hand
+/// feels, -w, is the reaction of a mass that really moves, and implicit steps only lose energy. The
+/// multipliers come from the method of multipliers with one factorisation, as in HandDynamics;
+/// redundant loop equations need no care. No allocation after construction.
+class CoupledDynamics {
+ public:
+  /// Keeps a reference to the tree. Rotational rows of the coupling do not count for a point grasp.
+  /// `step` [s] > 0; `q`: a closed pose. @throws std::invalid_argument as RefuseUnrenderedFriction,
+  /// or if the step or a gain is out of range.
+  CoupledDynamics(const KinematicTree& tree, const GraspFrame& grasp, const HandCoupling& coupling,
+                  double step, const VectorXd& q);
+
+  /// At rest from now on.
+  void Stop() noexcept;
+  /// A step with the hand at X_WH, moving with V_WH [v; w] at Ho, world axes.
+  [[nodiscard]] CoupledStatus Step(const Posed& X_WH, const Vector6d& V_WH) noexcept;
+
+  // After the last step.
+  const VectorXd& q() const noexcept { return q_; }
+  const VectorXd& v() const noexcept { return v_; }
+  const Posed& X_WG() const noexcept { return pose_.X_WG(); }
+  Vector6d V_WG() const noexcept { return pose_.J() * v_; }
+  /// Hand on mechanism during the step, at Go, world axes: what the coupling pulls.
+  const Vector6d& w() const noexcept { return w_; }
+  /// Every joint's wrench during the step, as HandDynamics::joints.
+  const std::vector<Wrenchd>& joints() const noexcept { return joints_; }
+  /// Kinetic energy, weight, springs of joints and coupling [J].
+  double Energy() const noexcept;
+  double closure() const noexcept { return closure_; }  ///< largest loop error [-], lengths over L
+  bool at_limit() const noexcept;                       ///< a joint stands at a limit
+  bool slipping() const noexcept { return slipping_; }  ///< the coupling is at its largest wrench
+
+ private:
+  void BiasForces() noexcept;
+  void BuildSystem() noexcept;
+  void AddCoupling() noexcept;
+  void AddPassive() noexcept;
+  bool SolveWithLimits() noexcept;
+  bool SolveVelocity() noexcept;
+  bool Slip() noexcept;
+  bool ChangeContacts() noexcept;
+  void FindWrenches() noexcept;
+  CoupledStatus Move() noexcept;
+  bool Close() noexcept;
+
+  const KinematicTree& tree_;
+  HandCoupling coupling_;
+  double T_;
+  HeldPose pose_;
+  VectorXd row_scale_, W_;  // per loop equation
+  MatrixXd M_, KJ_, WC_, H_, H0_;
+  Eigen::LLT<MatrixXd> factor_;
+  std::vector<CompositeInertia> bodies_;
+  VectorXd q_, v_, next_q_, next_v_, vdot_, bias_, rhs_, x_, mu_, d_, e2_;
+  std::vector<Wrenchd> applied_, joints_;
+  std::vector<int> contact_;  // per velocity: -1 at the lower limit, 1 at the upper, 0 free
+  Posed X_WH_;
+  Vector6d e1_ = Vector6d::Zero(), V_WH_ = Vector6d::Zero(), w_ = Vector6d::Zero();
+  double closure_ = 0;
+  bool slipping_ = false;
+};
+
+}  // namespace vmech

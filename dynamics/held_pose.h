@@ -1,0 +1,57 @@
+#pragma once
+
+#include <vector>
+
+#include "vmech/kinematics/inverse_kinematics.h"
+#include "vmech/kinematics/tree_workspace.h"
+
+namespace vmech {
+
+/// A mechanism in a hand at one pose, with memory: the grasp's Jacobian J, the loops' C, and what
+/// the joints carry. The common ground of HandDynamics and CoupledDynamics. Nothing allocates after
+/// construction.
+class HeldPose {
+ public:
+  /// Keeps a reference to the tree.
+  HeldPose(const KinematicTree& tree, const GraspFrame& grasp);
+
+  /// Takes q [nq]; returns the pose of the grasp frame.
+  const Posed& Set(const VectorXd& q) noexcept;
+  /// Nodes and loop errors alone, as needed between two steps of a closure.
+  void SetLoops(const VectorXd& q) noexcept;
+
+  const Posed& X_WG() const noexcept { return X_WG_; }
+  const MatrixXd& J() const noexcept { return J_; }  ///< [6, nv], V_WG = J v
+  const MatrixXd& C() const noexcept { return C_; }  ///< [rows, nv], C v = 0
+  TreeWorkspace<double>& ws() noexcept { return ws_; }
+  const TreeWorkspace<double>& ws() const noexcept { return ws_; }
+
+  /// Joint by joint of the mechanism, what the first link exerts on the second about the second
+  /// anchor's origin, axes of the first anchor. Needs F_Bo of RecursiveNewtonEuler in ws, which it
+  /// relieves of the hand's wrench at Go and of the multipliers of tau = J' w + C' mu.
+  void LoadJoints(const Vector6d& w_hand, const VectorXd& mu,
+                  std::vector<Wrenchd>* joints) noexcept;
+
+  /// Kinetic energy at the velocities in ws, and weight (zero with all centres of gravity at the
+  /// height of Wo) [J].
+  double MechanicalEnergy() const noexcept;
+
+ private:
+  const KinematicTree& tree_;
+  GraspFrame grasp_;
+  TreeWorkspace<double> ws_;
+  Posed X_WG_;
+  MatrixXd J_, C_;
+};
+
+/// Friction in proportion to a joint's load, and springs or friction at a cut joint, are beyond
+/// these paths. @throws std::invalid_argument naming the joint.
+void RefuseUnrenderedFriction(const KinematicTree& tree);
+
+/// Does this freedom have a spring or friction?
+bool IsPassive(const Passive& passive);
+
+/// Dry friction builds up in proportion to the speed until here [m/s] or [rad/s].
+inline constexpr double kSlowSliding = 1e-2;
+
+}  // namespace vmech

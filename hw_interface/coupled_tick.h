@@ -1,0 +1,70 @@
+#pragma once
+
+#include "vmech/dynamics/coupled_dynamics.h"
+#include "vmech/hw_interface/joint_peaks.h"
+#include "vmech/hw_interface/tick.h"
+
+namespace vmech {
+
+struct CoupledTickOptions {
+  /// Spring and damper as the hand feels them (CouplingOf). Stiffer feels truer and calls for a
+  /// faster device.
+  HandCoupling coupling;
+  /// Force at the hand over force at the mechanism, in [1e-6, 1e3]: 0.1 makes it ten times as
+  /// light.
+  double scale = 1;
+  double smoothing = 2e-3;  ///< time constant of the hand's velocity [s], in [0, 0.1]
+
+  /// @throws std::invalid_argument naming field, value and range.
+  void Validate() const;
+};
+
+/// Ticks in which each thing happened since the hand took hold.
+struct CoupledSummary {
+  long ticks = 0;
+  long at_limit = 0;         ///< a joint stood at a limit
+  long slipping = 0;         ///< the coupling was at its largest wrench
+  long stopped = 0;          ///< the loops did not close where the motion led; it stopped before
+  double worst_closure = 0;  ///< [-], lengths over the characteristic length
+  double farthest = 0;       ///< hand from grasp frame [m]
+
+  std::string BriefReport() const;
+};
+
+/// The second architecture: a mechanism that moves by its own dynamics, and between it and the hand
+/// a spring and a damper (CoupledDynamics). The hand feels true inertia at frequencies far below
+/// that of the mechanism on the spring, needs no acceleration, and can let freedoms go that its
+/// grasp does not reach. No allocation after construction.
+class CoupledTick : public Tick {
+ public:
+  /// Keeps a reference to the tree. `q`: a closed pose, where the hand takes hold.
+  /// @throws std::invalid_argument as Validate and CoupledDynamics.
+  CoupledTick(const KinematicTree& tree, int grasp, const VectorXd& q, double period,
+              const CoupledTickOptions& options);
+
+  std::vector<std::string> ChannelNames() const override;
+  Posed GraspFrame() const noexcept override { return dynamics_.X_WG(); }
+  void Reset() noexcept override;
+  TickOutput Step(const TickInput& input, std::span<double> channels) noexcept override;
+
+  const CoupledDynamics& dynamics() const noexcept { return dynamics_; }
+  const CoupledSummary& summary() const noexcept { return summary_; }
+  /// Largest force of each joint since the hand took hold [N].
+  const std::vector<double>& peak_forces() const noexcept { return peaks_.forces(); }
+  std::string FullReport() const override;
+
+ private:
+  void EstimateTwist(const TickInput& input) noexcept;
+  void Account(CoupledStatus status, std::span<double> channels) noexcept;
+
+  CoupledTickOptions options_;
+  CoupledDynamics dynamics_;
+  double period_;
+  bool has_hand_ = false;
+  Posed X_WH_;
+  Vector6d V_WH_ = Vector6d::Zero();
+  JointPeaks peaks_;
+  CoupledSummary summary_;
+};
+
+}  // namespace vmech

@@ -1,0 +1,258 @@
+#include "vmech/hw_interface/coupled_tick.h"
+
+#include <gtest/gtest.h>
+
+#include <complex>
+#include <numbers>
+
+#include "support/examples.h"
+#include "vmech/dynamics/hand_dynamics.h"
+#include "vmech/dynamics/newton_euler.h"
+#include "vmech/hw_interface/coupling_choice.h"
+#include "vmech/hw_interface/runner.h"
+#include "vmech/hw_interface/simulated_master.h"
+#include "vmech/kinematics/forward_kinematics.h"
+#include "vmech/kinematics/jacobian.h"
+#include "vmech/kinematics/linear_algebra.h"
+#include "vmech/kinematics/loops.h"
+#include "vmech/kinematics/rotation_error.h"
+
+namespace vmech {
+namespace {
+
+constexpr double kPeriod = 1e-3;
+constexpr double kSmoothing = 2e-3;
+
+VectorXd Start(const KinematicTree& tree) {
+  VectorXd q = StartCoordinates(tree);
+  EXPECT_TRUE(Assemble(tree, {}, &q).closed);
+  return q;
+}
+
+Posed HandleOf(const SimulatedMasterOptions& options) {
+  return ArmModel(std::make_shared<const ArmDescription>(SarcosMasterArm(options.hand.mass)))
+      .X_DH();
+}
+
+/// A mechanism on the coupling that suits a simulated arm; the whole session can run.
+struct Session {
+  Session(const Mechanism& mechanism, const std::string& grasp_name,
+          const SimulatedMasterOptions& arm)
+      : tree(BuildKinematicTree(mechanism)), q(Start(tree)), master(arm) {
+    master.Configure();
+    grasp = FindGrasp(mechanism, grasp_name);
+    choice = ChooseCoupling(tree, GraspFrameOf(tree, grasp), q, master.info(), kSmoothing);
+    CoupledTickOptions options;
+    options.coupling = choice.coupling;
+    options.scale = choice.scale;
+    tick = std::make_unique<CoupledTick>(tree, grasp, q, kPeriod, options);
+  }
+
+  RunSummary Run(double seconds) {
+    RunnerOptions options;
+    options.seconds = seconds;
+    options.record = true;
+    options.realtime.reset();
+    options.safety = choice.Safety();
+    FreeRunningClock clock;
+    Runner runner(options, &master, tick.get(), &clock);
+    const RunSummary summary = runner.Run();
+    kept = runner.Kept();
+    return summary;
+  }
+  TickOutput Step(const Posed& X_WH) {
+    std::vector<double> channels(tick->ChannelNames().size());
+    TickInput input;
+    input.X_WH = X_WH;
+    input.fresh = true;
+    input.elapsed = kPeriod;
+    return tick->Step(input, channels);
+  }
+  Vector6d Rest(const Posed& X_WH) {
+    for (int k = 0; k < 5000; ++k) EXPECT_EQ(Step(X_WH).status, TickStatus::kOk);
+    return Step(X_WH).F_Ho_W;
+  }
+
+  KinematicTree tree;
+  VectorXd q;
+  SimulatedMaster master;
+  int grasp = -1;
+  CouplingChoice choice;
+  std::unique_ptr<CoupledTick> tick;
+  Recording kept;
+};
+
+TEST(CoupledTick, HandPulledOffIsPulledBack) {
+  Mechanism crank = Example("crank");
+  crank.gravity_W.setZero();
+  Session held(crank, "tip", {});
+  Posed X_WH = held.tick->GraspFrame();
+  const Vector3d outwards = X_WH.p.normalized();
+  X_WH.p += 0.01 * outwards;
+  const Vector6d F = held.Rest(X_WH);
+  const double pull = 0.01 * held.choice.coupling.stiffness[0];
+  EXPECT_LT((F.head<3>() + pull * outwards).norm(), 1e-6 * pull);
+  EXPECT_EQ(F.tail<3>().norm(), 0);  // a point grasp
+}
+
+TEST(CoupledTick, FreeMotionFeelsNoConstraint) {
+  Mechanism four_bar = Example("four-bar");
+  four_bar.gravity_W.setZero();
+  Session held(four_bar, "handle", {});
+  Posed X_WH = held.tick->GraspFrame();
+  X_WH.p += Vector3d(1e-3, -5e-4, 2e-3);
+  X_WH.R = Eigen::AngleAxisd(0.02, Vector3d(1, 2, -1).normalized()).toRotationMatrix() * X_WH.R;
+  const Vector6d w_c = -held.Rest(X_WH);
+  EXPECT_GT(w_c.norm(), 1);
+  const GraspFrame grasp = GraspFrameOf(held.tree, held.grasp);
+  HandDynamics dynamics(held.tree, grasp, held.choice.coupling.stiffness,
+                        held.tick->dynamics().q());
+  ASSERT_TRUE(dynamics.Evaluate(Vector6d::Ones(), Vector6d::Zero()));
+  HeldPose pose(held.tree, grasp);
+  pose.Set(held.tick->dynamics().q());
+  const Vector6d V = pose.J() * dynamics.v();
+  EXPECT_LT(std::abs(w_c.dot(V)), 1e-5 * w_c.norm() * V.norm());
+}
+
+TEST(CoupledTick, TakesHoldWithoutAJumpAndLetsGoOfItsSpeed) {
+  Session held(Example("crank"), "tip", {});
+  EXPECT_LT(held.Step(held.tick->GraspFrame()).F_Ho_W.norm(), 1);
+  Posed X_WH = held.tick->GraspFrame();
+  for (int k = 0; k < 100; ++k) {
+    X_WH.p.x() -= 1e-3;
+    ASSERT_EQ(held.Step(X_WH).status, TickStatus::kOk);
+  }
+  EXPECT_GT(held.tick->dynamics().v().norm(), 0.1);
+  held.tick->Reset();
+  EXPECT_EQ(held.tick->dynamics().v().norm(), 0);
+  EXPECT_LT(held.Step(held.tick->GraspFrame()).F_Ho_W.norm(), 1);
+}
+
+class EveryCoupledSession : public testing::TestWithParam<std::string> {};
+
+TEST_P(EveryCoupledSession, HandAtRestFeelsTheGravityShare) {
+  Session held(Example(GetParam()), "handle", {});
+  const Vector6d F = held.Rest(held.tick->GraspFrame());
+  HandDynamics statics(held.tree, GraspFrameOf(held.tree, held.grasp),
+                       held.choice.coupling.stiffness, held.tick->dynamics().q());
+  ASSERT_TRUE(statics.Evaluate(Vector6d::Zero(), Vector6d::Zero()));
+  const Vector6d share = held.choice.scale * statics.w_d();
+  EXPECT_GT(share.norm(), 1);
+  // The mechanism sags on the spring by a few tenths of a millimetre along a curved path.
+  constexpr double kSag = 0.02;
+  EXPECT_LT((F + share).norm(), kSag * share.norm());
+}
+
+TEST_P(EveryCoupledSession, RunsWithoutAFault) {
+  SimulatedMasterOptions arm;
+  arm.motion = Wander(HandleOf(arm), 0.04, 0.15, 2);
+  Session session(Example(GetParam()), "handle", arm);
+  const RunSummary summary = session.Run(5);
+  EXPECT_EQ(summary.status, RunStatus::kFinished) << summary.FullReport();
+  EXPECT_GT(summary.least_energy, -0.02);
+  EXPECT_LT(session.tick->summary().worst_closure, 1e-10);
+  EXPECT_EQ(session.tick->summary().stopped, 0);
+}
+
+/// What the device shows of a mechanism without weight when an operator shakes it along a free
+/// motion: the part of the felt force that goes with the acceleration, over the true inertia.
+std::complex<double> FeltOverTrueInertia(const std::string& name, double hertz) {
+  Mechanism mechanism = Example(name);
+  mechanism.gravity_W.setZero();
+  const KinematicTree tree = BuildKinematicTree(mechanism);
+  const VectorXd q = Start(tree);
+  const GraspFrame grasp = GraspFrameOf(tree, FindGrasp(mechanism, "handle"));
+  HeldPose pose(tree, grasp);
+  pose.Set(q);
+  constexpr double kRank = 1e-9;
+  const MatrixXd N = tree.loops.empty()
+                         ? MatrixXd(MatrixXd::Identity(tree.nv, tree.nv))
+                         : FindNullSpace(LoopRowScale(tree).asDiagonal() * pose.C(), kRank).basis;
+  const MatrixXd JN = pose.J() * N, M = N.transpose() * MassMatrix(tree, q) * N;
+
+  constexpr double kReach = 1e-3;  // [m]: the inertia changes along the way
+  const Vector6d way =
+      kReach * JN.col(0) / (JN.col(0).head<3>().norm() + 0.1 * JN.col(0).tail<3>().norm());
+  SimulatedMasterOptions arm;
+  arm.hand = ImpedanceOf(Grip::kFirm);
+  const Posed X_DH = HandleOf(arm);
+  const double rate = 2 * std::numbers::pi * hertz;
+  arm.motion = [=](double t) {
+    const Vector6d s = std::sin(rate * t) * way;
+    const double angle = s.tail<3>().norm();
+    HandTargetMotion target{X_DH, rate * std::cos(rate * t) * way};
+    target.X_DT.p += s.head<3>();
+    if (angle > 0) {
+      target.X_DT.R = Eigen::AngleAxisd(angle, s.tail<3>() / angle).toRotationMatrix() * X_DH.R;
+    }
+    return target;
+  };
+  Session session(mechanism, "handle", arm);
+  EXPECT_EQ(session.Run(6).status, RunStatus::kFinished);
+
+  // Fourier components at that rate over whole seconds.
+  Vector6<std::complex<double>> X = Vector6<std::complex<double>>::Zero(), F = X;
+  for (int k = 2000; k < 6000; ++k) {
+    const TickRecord& record = session.kept.ticks[k];
+    const std::complex<double> phase = std::polar(1.0, -rate * k * kPeriod);
+    X += phase * HandError(X_DH, record.state.X_DH).cast<std::complex<double>>();
+    F += phase * record.sent_F_Ho_D.cast<std::complex<double>>();
+  }
+  // The free motion nearest to the hand's, in the metric of the coupling.
+  const MatrixXd KJN = session.choice.coupling.stiffness.asDiagonal() * JN;
+  const Eigen::VectorXcd s = (KJN.transpose() * JN)
+                                 .eval()
+                                 .cast<std::complex<double>>()
+                                 .lu()
+                                 .solve(KJN.transpose().cast<std::complex<double>>() * X);
+  const Eigen::VectorXcd expected =
+      rate * rate * session.choice.scale * (M.cast<std::complex<double>>() * s);
+  const Eigen::VectorXcd felt = JN.transpose().cast<std::complex<double>>() * F;
+  return expected.dot(felt) / expected.squaredNorm();
+}
+
+TEST_P(EveryCoupledSession, FeltInertiaIsTheTrueOneBelow3Hertz) {
+  for (const double hertz : {1.0, 2.0, 2.75}) {
+    EXPECT_NEAR(FeltOverTrueInertia(GetParam(), hertz).real(), 1, 0.05) << hertz;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Examples, EveryCoupledSession,
+                         testing::Values("crank", "two-link-arm", "slider-crank", "four-bar",
+                                         "rssr", "bennett", "stewart-gough"),
+                         [](const auto& info) { return TestName(info.param); });
+
+TEST(ChooseCoupling, ScalesDownWhatIsTooHeavyForTheDevice) {
+  const Mechanism platform = Example("stewart-gough");
+  const KinematicTree tree = BuildKinematicTree(platform);
+  const GraspFrame grasp = GraspFrameOf(tree, FindGrasp(platform, "handle"));
+  DeviceInfo device;
+  device.takes_wrench = true;
+  device.linear = {10, 1, 0, 0, 100, 2};
+  device.angular = {1, 1, 0, 0, 10, 15};
+  const VectorXd q = Start(tree);
+  const CouplingChoice choice = ChooseCoupling(tree, grasp, q, device, kSmoothing);
+  // The platform's 10 kg and its legs' share.
+  EXPECT_GT(choice.weight, 10 * 9.81);
+  EXPECT_NEAR(choice.scale * choice.weight, 50, 1e-9);
+  device.linear.peak = 0;
+  EXPECT_EQ(ChooseCoupling(tree, grasp, q, device, kSmoothing).scale, 1);
+}
+
+TEST(ChooseCoupling, SlowerDevicesGetASofterSpring) {
+  const Mechanism four_bar = Example("four-bar");
+  const KinematicTree tree = BuildKinematicTree(four_bar);
+  const GraspFrame grasp = GraspFrameOf(tree, 0);
+  SimulatedMaster master;
+  master.Configure();
+  DeviceInfo device = master.info();
+  const CouplingChoice fast = ChooseCoupling(tree, grasp, Start(tree), device, kSmoothing);
+  device.delay = 0.01;
+  const CouplingChoice slow = ChooseCoupling(tree, grasp, Start(tree), device, kSmoothing);
+  EXPECT_EQ(fast.scale, 1);
+  EXPECT_LT(slow.scale, 0.2);
+  EXPECT_LT(slow.coupling.stiffness[0], 0.2 * fast.coupling.stiffness[0]);
+}
+
+}  // namespace
+}  // namespace vmech
