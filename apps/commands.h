@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "vmech/apps/ik.h"
-#include "vmech/apps/import.h"
 
 namespace vmech {
 
@@ -47,8 +46,6 @@ struct IkArguments {
   bool json = false;
 };
 int RunIk(const IkArguments& arguments);
-
-int RunImport(ImportArguments arguments);
 
 struct ExportArguments {
   std::filesystem::path mechanism, out;

@@ -5,8 +5,10 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <stdexcept>
+#include <string_view>
 
 #include "vmech/apps/commands.h"
+#include "vmech/apps/import_launcher.h"
 #include "vmech/mechanisms/document.h"
 
 namespace {
@@ -83,29 +85,6 @@ void AddIk(CLI::App* app, vmech::IkArguments* ik) {
                     "rotation error of the paper (sine) instead of the angle");
   command->add_flag("--no-limits", question.no_limits, "ignore the limits of joints");
   command->add_flag("--json", ik->json, "print JSON instead of text");
-}
-
-constexpr const char* kImportHelp =
-    "Makes a mechanism file of a file of another program, told by its ending:\n"
-    "  .sdf, .world   SDFormat (Gazebo)\n"
-    "  .urdf          URDF (ROS); its loops come from a side file\n"
-    "and reports bodies, masses, joints, what was guessed and what was left out.";
-
-void AddImport(CLI::App* app, vmech::ImportArguments* import) {
-  CLI::App* command = app->add_subcommand("import", kImportHelp);
-  command->add_option("FILE", import->file, "what to read")->required()->type_name("FILE");
-  command->add_option("--out", import->out, "mechanism file to write")
-      ->required()
-      ->type_name("YAML");
-  command->add_option("--ground", import->options.ground, "link that stands still")
-      ->type_name("NAME");
-  command
-      ->add_option("--gravity", import->gravity,
-                   "in world axes [m/s^2], \"0 0 -9.81\" (default: that of the file)")
-      ->type_name("NUMBERS");
-  command->add_option("--loops", import->loops, "side file with the loops of a URDF")
-      ->type_name("FILE");
-  command->add_flag("--si", import->si, "metres and radians instead of millimetres and degrees");
 }
 
 constexpr const char* kExportHelp =
@@ -233,12 +212,13 @@ int Run(int argc, char** argv) {
       ->capture_default_str();
   compare_command->add_flag("-q,--quiet", compare.quiet, "print nothing but errors");
 
+  app.add_subcommand(
+      "import",
+      "Makes a mechanism file of a CAD assembly, SDFormat or URDF; see `vmech import --help`");
   vmech::IkArguments ik;
   AddIk(&app, &ik);
   vmech::HapticArguments haptic;
   AddHaptic(&app, &haptic);
-  vmech::ImportArguments import;
-  AddImport(&app, &import);
   vmech::ExportArguments export_arguments;
   AddExport(&app, &export_arguments);
 
@@ -251,7 +231,6 @@ int Run(int argc, char** argv) {
                    : loads_command->parsed()      ? RunLoads(loads)
                    : app.got_subcommand("ik")     ? RunIk(ik)
                    : app.got_subcommand("haptic") ? RunHaptic(haptic)
-                   : app.got_subcommand("import") ? RunImport(import)
                    : app.got_subcommand("export") ? RunExport(export_arguments)
                                                   : RunCompare(compare);
   if (std::fflush(stdout) != 0) throw vmech::FileErrors("standard output", "cannot be written");
@@ -262,6 +241,7 @@ int Run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
+    if (argc > 1 && std::string_view(argv[1]) == "import") vmech::BecomeImport(argv + 1);
     return Run(argc, argv);
   } catch (const vmech::FileErrors& error) {
     fmt::print(stderr, "{}\n", error.what());

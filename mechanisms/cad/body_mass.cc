@@ -70,16 +70,16 @@ void SetDensity(const CadShape& shape, const std::string& body, const DensityOpt
     part->density = known->density;
     part->source = fmt::format("usual for {}, the material in the file", known->name);
   } else {
-    part->density = options.fallback;
-    part->source = "assumed";
-    part->assumed = true;
+    part->density = options.fallback.value_or(kUsualDensity);
+    part->assumed = !options.fallback;
+    part->source = part->assumed ? "assumed" : "given for all";
   }
 }
 
 }  // namespace
 
 void DensityOptions::Validate() const {
-  RequireDensity(fallback);
+  if (fallback) RequireDensity(*fallback);
   for (const auto& [name, density] : by_name) RequireDensity(density);
 }
 
@@ -104,6 +104,7 @@ BodyMass WeighBody(const CadAssembly& assembly, const CadBody& body,
   for (const int p : body.parts) {
     const CadShape& shape = assembly.shapes[assembly.parts[p].shape];
     BodyMass::Part part;
+    part.part = p;
     part.name = assembly.parts[p].name;
     part.volume = shape.volume.volume;
     SetDensity(shape, body.name, options, &part);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,13 +10,15 @@
 
 namespace vmech {
 
+constexpr double kUsualDensity = 7850;  ///< [kg/m^3]: steel
+
 /// Where densities come from, in this order: the user's word for a part, a product, a body or a
 /// material; the density in the file; the table of materials by the name in the file; the default.
 struct DensityOptions {
   /// Name (of a part, product, body or material) and density [kg/m^3], 1e-3..1e5.
   std::vector<std::pair<std::string, double>> by_name;
-  /// Of everything else [kg/m^3], 1e-3..1e5; that of steel.
-  double fallback = 7850;
+  /// Of everything else [kg/m^3], 1e-3..1e5; none: kUsualDensity, said to be assumed.
+  std::optional<double> fallback;
 
   /// @throws std::invalid_argument
   void Validate() const;
@@ -29,6 +32,7 @@ double DensityFromText(const std::string& text);
 struct BodyMass {
   MassProperties mass_properties;
   struct Part {
+    int part = -1;  ///< index in CadAssembly
     std::string name;
     double volume = 0;   ///< [m^3]
     double density = 0;  ///< [kg/m^3]

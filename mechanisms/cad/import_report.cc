@@ -90,7 +90,8 @@ std::string CadImport::FullReport() const {
   AddJoints(*this, &text);
   AddUnmatched(*this, &text);
   if (!mechanism.grasps.empty()) {
-    text += fmt::format("\n{} grasps\n", mechanism.grasps.size());
+    text += fmt::format("\n{} grasp{}\n", mechanism.grasps.size(),
+                        mechanism.grasps.size() > 1 ? "s" : "");
     for (const Grasp& grasp : mechanism.grasps) {
       text += fmt::format("  {}: {}, {}\n", grasp.name, mechanism.links[grasp.link].name,
                           grasp.kind == GraspKind::kPoint ? "point" : "rigid");

@@ -12,14 +12,16 @@
 
 #include "vmech/mechanisms/cad/anchors.h"
 #include "vmech/mechanisms/cad/joint_fit.h"
+#include "vmech/mechanisms/cad/tidy.h"
 #include "vmech/mechanisms/document.h"
 #include "vmech/mechanisms/graph.h"
 
 namespace vmech {
 namespace {
 
-constexpr double kWorthSayingGap = 1e-5;   // [m]
-constexpr double kWorthSayingSkew = 1e-3;  // [rad]
+const Vector3d kUsualGravity{0, 0, -9.81};  // [m/s^2]
+constexpr double kWorthSayingGap = 1e-5;    // [m]
+constexpr double kWorthSayingSkew = 1e-3;   // [rad]
 
 std::string Lower(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -36,7 +38,8 @@ class Importer {
     result_.remarks = assembly.remarks;
     result_.mechanism.name =
         options.name.empty() ? std::filesystem::path(assembly.file).stem().string() : options.name;
-    result_.mechanism.gravity_W = options.gravity_W;
+    result_.mechanism.gravity_W = options.gravity_W.value_or(kUsualGravity);
+    if (!options.gravity_W) Guess("gravity is 9.81 m/s^2 against z (--gravity)");
   }
 
   CadImport Run() {
@@ -52,6 +55,7 @@ class Importer {
     ThrowErrors();
     CheckConnected();
     ThrowErrors();
+    Tidy(&result_.mechanism);
     return std::move(result_);
   }
 
@@ -120,7 +124,7 @@ class Importer {
       if (link == mechanism.ground && !mass.defects.empty()) {
         mechanism.links.back().mass_properties = {};
       }
-      result_.bodies.push_back({link, mass});
+      result_.bodies.push_back({link, body.X_WL, mass});
       features_.push_back(FeaturesOf(assembly_, body));
     }
     GuessDensities();
@@ -136,8 +140,7 @@ class Importer {
       }
     }
     if (count == 0) return;
-    Guess(fmt::format("density of {:g} kg/m^3 for {} (--density)", options_.densities.fallback,
-                      names));
+    Guess(fmt::format("density of {:g} kg/m^3 for {} (--density)", kUsualDensity, names));
   }
 
   void CollectFrames() {

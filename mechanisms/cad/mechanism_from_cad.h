@@ -24,7 +24,8 @@ struct CadImportOptions {
   /// The body that stands still. Empty: the one called ground, frame, base, housing or stand; else
   /// a link "ground" if there are frames directly in the file; else the first body.
   std::string ground;
-  Vector3d gravity_W{0, 0, -9.81};  ///< [m/s^2], in the axes of the file
+  /// [m/s^2], in the axes of the file; none: 9.81 against z, said to be guessed.
+  std::optional<Vector3d> gravity_W;
   /// Types by joint, before what the frames say.
   std::vector<std::pair<std::string, JointType>> joint_types;
   bool propose = false;          ///< take the joints that the geometry suggests, too
@@ -33,6 +34,7 @@ struct CadImportOptions {
 
 struct ImportedBody {
   int link = -1;
+  Posed X_WL;  ///< the axes of the link in those of the file, as drawn
   BodyMass mass;
 };
 

@@ -23,12 +23,12 @@ TopoDS_Shape FrameShape() {
 TopoDS_Shape CrankShape() {
   const TopoDS_Shape journal = Cylinder({0, 0, -50}, kZ, 10, 40);
   const TopoDS_Shape web = Box({-15, -15, -10}, {65, 15, 0});
-  return Join(Join(journal, web), Cylinder({kCrank, 0, 0}, kZ, 8, 20));
+  return Join(Join(journal, web), Cylinder({kCrank, 0, 0}, kZ, 8.5, 20));
 }
 
 TopoDS_Shape RodShape() {
   const TopoDS_Shape big =
-      Cut(Box({-20, -20, -10}, {20, 20, 10}), Cylinder({0, 0, -10}, kZ, 8, 20));
+      Cut(Box({-20, -20, -10}, {20, 20, 10}), Cylinder({0, 0, -10}, kZ, 8.5, 20));
   const TopoDS_Shape shank = Box({20, -8, -6}, {135, 8, 6});
   const TopoDS_Shape small =
       Cut(Box({135, -15, -10}, {165, 15, 10}), Cylinder({kRod, 0, -10}, kZ, 6, 20));

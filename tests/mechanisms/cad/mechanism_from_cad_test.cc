@@ -8,6 +8,7 @@ namespace vmech {
 namespace {
 
 constexpr double kRoundoff = 1e-12;
+constexpr double kStart = 1e-11;  // [rad]: starts are rounded to 1e-9 degrees
 
 Posed At(double x, double y, double z, double turn_about_z = 0) {
   return {Eigen::AngleAxisd(turn_about_z, Vector3d::UnitZ()).toRotationMatrix(), {x, y, z}};
@@ -54,7 +55,7 @@ TEST(MechanismFromCad, JoinsBodiesAtAnchorsOfOneName) {
   EXPECT_EQ(mechanism.links[mechanism.ground].name, "base");
   ASSERT_EQ(mechanism.joints.size(), 1u);
   EXPECT_EQ(mechanism.joints[0].name, "hinge");
-  EXPECT_NEAR(mechanism.joints[0].start[0], 0.5, kRoundoff);
+  EXPECT_NEAR(mechanism.joints[0].start[0], 0.5, kStart);
   EXPECT_EQ(mechanism.joints[0].first.link, mechanism.ground);
   EXPECT_NEAR(import.joints[0].gap + import.joints[0].skew, 0, 1e-7);
 }
@@ -105,7 +106,7 @@ TEST(MechanismFromCad, TurnsFramesThatEndInInv) {
   for (CadFrame& frame : assembly.frames) frame.name = "dof_hinge_inv";
   const Mechanism mechanism = MechanismFromCad(assembly).mechanism;
   EXPECT_NEAR(mechanism.links[0].anchors[0].X_LA.R(2, 2), -1, kRoundoff);
-  EXPECT_NEAR(mechanism.joints[0].start[0], -0.5, kRoundoff);
+  EXPECT_NEAR(mechanism.joints[0].start[0], -0.5, kStart);
 }
 
 TEST(MechanismFromCad, ReportsHowFarAnchorsAreApart) {

@@ -109,7 +109,7 @@ TEST(CadSamples, TellTheDiametersOfTheirShafts) {
     return 0.0;
   };
   EXPECT_NEAR(diameter("main"), 0.020, kDigits);
-  EXPECT_NEAR(diameter("pin"), 0.016, kDigits);
+  EXPECT_NEAR(diameter("pin"), 0.017, kDigits);
   EXPECT_NEAR(diameter("wrist"), 0.012, kDigits);
   EXPECT_EQ(diameter("guide"), 0) << "a slide has no bearing";
 }
@@ -122,13 +122,13 @@ const Vector3d kX{1, 0, 0}, kZ{0, 0, 1};
 MassProperties CrankByHand() {
   return MassOf(CylinderMoments({0, 0, -50}, kZ, 10, 40) +
                     BoxMoments({-15, -15, -10}, {65, 15, 0}) +
-                    CylinderMoments({50, 0, 0}, kZ, 8, 20),
+                    CylinderMoments({50, 0, 0}, kZ, 8.5, 20),
                 kSteel);
 }
 
 MassProperties RodByHand() {
   return MassOf(
-      BoxMoments({-20, -20, -10}, {20, 20, 10}) - CylinderMoments({0, 0, -10}, kZ, 8, 20) +
+      BoxMoments({-20, -20, -10}, {20, 20, 10}) - CylinderMoments({0, 0, -10}, kZ, 8.5, 20) +
           BoxMoments({20, -8, -6}, {135, 8, 6}) + BoxMoments({135, -15, -10}, {165, 15, 10}) -
           CylinderMoments({150, 0, -10}, kZ, 6, 20),
       kSteel);
@@ -195,7 +195,7 @@ LoadStudy At1500Rpm(const Mechanism& mechanism, ReactionRule rule) {
 
 TEST(CadSamples, SliderCrankHasTheJointLoadsOfTheOneWrittenByHand) {
   CadImportOptions options;
-  options.gravity_W = {0, -9.81, 0};
+  options.gravity_W = Vector3d(0, -9.81, 0);
   options.densities.by_name = {{"piston-body", kAluminium}};
   const Mechanism from_cad = Import("slider-crank", options).mechanism;
   const Mechanism by_hand = SliderCrankByHand();

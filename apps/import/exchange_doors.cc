@@ -1,9 +1,8 @@
-#include "vmech/apps/import.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "vmech/apps/import/doors.h"
 #include "vmech/mechanisms/document.h"
 #include "vmech/mechanisms/exchange/sdf.h"
 #include "vmech/mechanisms/exchange/urdf.h"
@@ -31,33 +30,7 @@ size_t WidestName(const Parts& parts) {
   return width;
 }
 
-ImportedFile ReadSdfFile(const ImportArguments& arguments) {
-  const ImportedMechanism imported = ReadSdf(arguments.file, arguments.options);
-  return {imported.mechanism, ImportReport(arguments.file, imported)};
-}
-
-ImportedFile ReadUrdfFile(const ImportArguments& arguments) {
-  ImportedMechanism imported = ReadUrdf(arguments.file, arguments.options);
-  const size_t joints = imported.mechanism.joints.size();
-  if (!arguments.loops.empty()) {
-    AddLoops(arguments.loops, &imported.mechanism);
-    imported.notes.push_back(fmt::format("{} of the joints come from {}",
-                                         imported.mechanism.joints.size() - joints,
-                                         arguments.loops.string()));
-  }
-  return {imported.mechanism, ImportReport(arguments.file, imported)};
-}
-
-}  // namespace
-
-const std::vector<ImportDoor>& ImportDoors() {
-  static const std::vector<ImportDoor> doors{
-      {{".sdf", ".world"}, "SDFormat", ReadSdfFile},
-      {{".urdf"}, "URDF", ReadUrdfFile},
-  };
-  return doors;
-}
-
+/// Bodies with their masses, joints, and the notes.
 std::string ImportReport(const std::filesystem::path& file, const ImportedMechanism& imported) {
   const Mechanism& mechanism = imported.mechanism;
   std::string text = fmt::format("{}: {}\n\nlinks       {}\n", file.filename().string(),
@@ -80,6 +53,33 @@ std::string ImportReport(const std::filesystem::path& file, const ImportedMechan
   text += fmt::format("gravity     [{:.6g}, {:.6g}, {:.6g}] m/s^2\n", g[0], g[1], g[2]);
   for (const std::string& note : imported.notes) text += fmt::format("note        {}\n", note);
   return text;
+}
+
+ImportOptions OptionsOf(const ImportArguments& arguments) {
+  if (!arguments.study.empty() || !arguments.meshes.empty()) {
+    throw FileErrors(arguments.file.string(),
+                     "holds no shapes: --study and --meshes are for STEP files");
+  }
+  return {arguments.cad.ground, arguments.cad.gravity_W};
+}
+
+}  // namespace
+
+ImportedFile ImportSdf(const ImportArguments& arguments) {
+  const ImportedMechanism imported = ReadSdf(arguments.file, OptionsOf(arguments));
+  return {imported.mechanism, ImportReport(arguments.file, imported), {}, {}, {}};
+}
+
+ImportedFile ImportUrdf(const ImportArguments& arguments) {
+  ImportedMechanism imported = ReadUrdf(arguments.file, OptionsOf(arguments));
+  const size_t joints = imported.mechanism.joints.size();
+  if (!arguments.loops.empty()) {
+    AddLoops(arguments.loops, &imported.mechanism);
+    imported.notes.push_back(fmt::format("{} of the joints come from {}",
+                                         imported.mechanism.joints.size() - joints,
+                                         arguments.loops.string()));
+  }
+  return {imported.mechanism, ImportReport(arguments.file, imported), {}, {}, {}};
 }
 
 }  // namespace vmech

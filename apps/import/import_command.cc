@@ -1,0 +1,98 @@
+#include "vmech/apps/import/import_command.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <list>
+
+#include "vmech/apps/check.h"
+#include "vmech/apps/commands.h"
+#include "vmech/apps/output_folder.h"
+#include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/reader.h"
+#include "vmech/mechanisms/writer.h"
+
+namespace vmech {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path FolderOf(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+/// Files in several folders that are written all or not at all.
+class Outputs {
+ public:
+  void Write(const fs::path& file, const std::string& text) {
+    folders_.emplace_back(FolderOf(file));
+    folders_.back().Write(file.filename().string(), text);
+    names_ += (names_.empty() ? "" : ", ") + file.string();
+  }
+
+  void Commit() {
+    for (OutputFolder& folder : folders_) folder.Commit();
+  }
+
+  const std::string& names() const { return names_; }
+
+ private:
+  std::list<OutputFolder> folders_;
+  std::string names_;
+};
+
+std::string MechanismText(const ImportedFile& imported, const ImportArguments& arguments) {
+  WriterOptions options;
+  options.units = arguments.si ? FileUnits::kMetresRadians : FileUnits::kMillimetresDegrees;
+  options.comment = fmt::format("From {} ({}).", arguments.file.filename().string(),
+                                DoorFor(arguments.file).what);
+  for (const std::string& guess : imported.guesses) options.comment += "\nGuessed: " + guess + ".";
+  return WriteMechanism(imported.mechanism, options);
+}
+
+std::string StudyFileText(const ImportedFile& imported, const ImportArguments& arguments) {
+  const fs::path there = fs::absolute(arguments.out).lexically_normal();
+  const fs::path here = fs::absolute(FolderOf(arguments.study)).lexically_normal();
+  return fmt::format("vmech_study: \"1.0\"\nmechanism: \"{}\"\n{}",
+                     there.lexically_relative(here).string(), imported.study);
+}
+
+void Print(const ImportedFile& imported, const MechanismCheck& check, const Outputs& outputs) {
+  fmt::print("{}", imported.report);
+  if (!check.assembly.closed) {
+    fmt::print("\nNOT ASSEMBLED: {}\n", check.assembly.message);
+  } else {
+    if (!check.tree.loops.empty()) {
+      fmt::print("loops       {}, which close from {:.2g} of the length {:.4g} m\n",
+                 check.tree.loops.size(), check.assembly.start_error, check.tree.length);
+    }
+    fmt::print("mobility    {}\n", check.mobility.mobility);
+  }
+  fmt::print("written to {}\n", outputs.names());
+}
+
+}  // namespace
+
+int RunImport(ImportArguments arguments) {
+  arguments.Validate();
+  if (arguments.out.empty()) arguments.out = arguments.file.stem().string() + ".yaml";
+  const std::string ending = EndingOf(arguments.out);
+  if (ending != ".yaml" && ending != ".yml") {
+    throw FileErrors(arguments.out.string(), "a mechanism is written as .yaml");
+  }
+  const ImportedFile imported = DoorFor(arguments.file).read(arguments);
+  const std::string text = MechanismText(imported, arguments);
+  const MechanismCheck check = CheckMechanism(ParseMechanism(text, arguments.out.string()));
+
+  Outputs outputs;
+  outputs.Write(arguments.out, text);
+  if (!arguments.study.empty()) outputs.Write(arguments.study, StudyFileText(imported, arguments));
+  for (const auto& [link, stl] : imported.meshes) {
+    outputs.Write(arguments.meshes / (link + ".stl"), stl);
+  }
+  outputs.Commit();
+  if (!arguments.quiet) Print(imported, check, outputs);
+  return check.assembly.closed ? kSuccess : kNoSolution;
+}
+
+}  // namespace vmech

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vmech/mechanisms/cad/mechanism_from_cad.h"
+#include "vmech/mechanisms/cad/step_reader.h"
+#include "vmech/mechanisms/mechanism.h"
+
+namespace vmech {
+
+/// What `vmech import` is asked for; the doors take what concerns them.
+struct ImportArguments {
+  std::filesystem::path file;
+  std::filesystem::path out;     ///< mechanism file; empty: "<file>.yaml" in the current folder
+  std::filesystem::path study;   ///< STEP: a study beside it; empty: none
+  std::filesystem::path meshes;  ///< STEP: folder of STL files; empty: none
+  std::filesystem::path loops;   ///< URDF: side file with its loops; empty: none
+  CadImportOptions cad;          ///< `ground` and `gravity_W` for all formats, the rest for STEP
+  StepReadOptions step;
+  std::vector<std::string>
+      drives;       ///< joints with a motor in the study; empty: the first that turns
+  double rpm = 60;  ///< of these, -1e6..1e6, not 0
+  bool si = false;  ///< write metres and radians
+  bool quiet = false;
+
+  /// @throws std::invalid_argument
+  void Validate() const;
+};
+
+/// A file of another program as a mechanism.
+struct ImportedFile {
+  Mechanism mechanism;
+  std::string report;                ///< a page that tells what it holds and what was guessed
+  std::vector<std::string> guesses;  ///< go to the head of the file, too
+  std::string study;                 ///< its text without `vmech_study` and `mechanism`
+  std::map<std::string, std::string> meshes;  ///< by link: binary STL
+};
+
+/// A kind of file that can be read, by the endings of its name (".urdf").
+struct ImportDoor {
+  std::vector<std::string_view> endings;
+  std::string_view what;
+  std::function<ImportedFile(const ImportArguments&)> read;
+};
+const std::vector<ImportDoor>& ImportDoors();
+
+/// The door of a file. @throws FileErrors if its ending is none that is known.
+const ImportDoor& DoorFor(const std::filesystem::path& file);
+
+/// The ending of a name, ".step", in small letters.
+std::string EndingOf(const std::filesystem::path& file);
+
+}  // namespace vmech
