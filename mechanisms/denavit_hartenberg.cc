@@ -110,8 +110,8 @@ class TableBuilder {
     table_.row_of_link.assign(mechanism_.links.size(), -1);
     table_.link_frames.resize(mechanism_.links.size());
     table_.row_of_grasp.assign(mechanism_.grasps.size(), -1);
-    const DhRow world;
-    AddRows(0, world);
+    starts_.resize(bodies_.size());
+    for (size_t i = 0; i < bodies_.size(); ++i) AddRows(bodies_[i], starts_[i]);
     return std::move(table_);
   }
 
@@ -160,10 +160,9 @@ class TableBuilder {
     }
   }
 
-  /// The rows of what a body carries, depth first. `start` is a row without a body yet: where it
-  /// begins, and theta and d of the way along the carrying axis.
-  void AddRows(int index, const DhRow& start) {
-    const Body& body = bodies_[index];
+  /// The rows of what a body carries. `start` is a row without a body yet: where it begins, and
+  /// theta and d of the way along the carrying axis.
+  void AddRows(const Body& body, const DhRow& start) {
     DhRow base = start;
     base.link = body.link;
     base.motion = body.freedom.motion;
@@ -196,7 +195,7 @@ class TableBuilder {
     next.parameters.theta = distal.pair.theta;
     next.parameters.d = distal.pair.d;
     if (distal.child >= 0) {
-      AddRows(distal.child, next);
+      starts_[distal.child] = next;
       return;
     }
     next.link = table_.rows.back().link;
@@ -214,6 +213,7 @@ class TableBuilder {
   const Mechanism& mechanism_;
   std::vector<Body> bodies_;
   std::vector<int> body_of_link_;
+  std::vector<DhRow> starts_;  ///< per body, written with the rows of its parent
   DhTable table_;
 };
 

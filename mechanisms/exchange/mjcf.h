@@ -20,6 +20,7 @@ namespace vmech {
 ///
 /// Capsules between the anchors of a link are there to be seen, they touch and weigh nothing.
 /// Notes tell what is lost.
+/// @throws std::invalid_argument if a link that moves is called "world".
 ExportedText WriteMjcf(const Mechanism& mechanism);
 
 }  // namespace vmech

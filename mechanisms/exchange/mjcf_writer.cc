@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "vmech/mechanisms/exchange/mjcf.h"
 #include "vmech/mechanisms/exchange/start_pose.h"
@@ -15,15 +16,20 @@ constexpr double kSmallestInertia = 1e-12;  // [kg m^2] MuJoCo refuses what is b
 constexpr double kLight = 1e-6;             // of the heaviest link: a link that must have a mass
 constexpr double kRod = 0.02;               // of the length: radius of what is seen
 
-/// Loops are best cut where <connect> says it all.
+/// Loops are best cut where <connect> says it all, and worst at screws: a light carriage on one
+/// would be soft.
 SpanningTree TreeFor(const Mechanism& mechanism) {
-  SpanningTreeOptions options;
-  for (size_t j = 0; j < mechanism.joints.size(); ++j) {
-    const JointType type = mechanism.joints[j].type;
-    if (type == JointType::kSpherical || type == JointType::kRevolute) {
-      options.cut.push_back(static_cast<int>(j));
+  const auto all = [&](auto&& wanted) {
+    std::vector<int> joints;
+    for (size_t j = 0; j < mechanism.joints.size(); ++j) {
+      if (wanted(mechanism.joints[j].type)) joints.push_back(static_cast<int>(j));
     }
-  }
+    return joints;
+  };
+  SpanningTreeOptions options;
+  options.cut = all(
+      [](JointType type) { return type == JointType::kSpherical || type == JointType::kRevolute; });
+  if (options.cut.empty()) options.cut = all([](JointType t) { return t != JointType::kScrew; });
   return FindSpanningTree(mechanism, options);
 }
 
@@ -34,6 +40,7 @@ class Writer {
         tree_(TreeFor(mechanism)),
         poses_(LinkStartPoses(mechanism, tree_)),
         length_(CharacteristicLength(mechanism)) {
+    RequireNames();
     double heaviest = 0;
     for (const Link& link : mechanism.links) {
       heaviest = std::max(heaviest, link.mass_properties.mass);
@@ -56,6 +63,13 @@ class Writer {
   }
 
  private:
+  void RequireNames() const {
+    const int world = FindLink(mechanism_, "world");
+    if (world < 0 || world == mechanism_.ground) return;
+    throw std::invalid_argument(
+        "'world' cannot name a link that moves in MuJoCo, where it is the ground; rename it");
+  }
+
   void NoteLosses(const Joint& joint) {
     const auto note = [&](const std::string& what) {
       notes_.push_back(fmt::format("joint '{}': {}", joint.name, what));

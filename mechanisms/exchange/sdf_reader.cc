@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <sdf/Console.hh>
@@ -15,6 +16,7 @@
 #include "vmech/mechanisms/document.h"
 #include "vmech/mechanisms/exchange/mechanism_builder.h"
 #include "vmech/mechanisms/exchange/sdf.h"
+#include "vmech/mechanisms/exchange/xml_text.h"
 
 namespace vmech {
 namespace {
@@ -211,11 +213,14 @@ class Reader {
   uint64_t left_out_ = 0;
 };
 
-/// libsdformat's errors with the lines that it knows.
+/// libsdformat's errors with the lines that it knows. Some messages quote the whole file.
 FileErrors Collected(const std::string& file, const sdf::Errors& errors) {
+  constexpr size_t kLongest = 200;
   std::vector<FileError> list;
   for (const sdf::Error& error : errors) {
-    list.push_back({file, error.LineNumber().value_or(0), 1, "", error.Message()});
+    std::string message = error.Message().substr(0, kLongest);
+    message.resize(std::min(message.size(), message.find('\n')));
+    list.push_back({file, error.LineNumber().value_or(0), 1, "", std::move(message)});
   }
   return FileErrors(std::move(list));
 }
@@ -251,6 +256,10 @@ bool HasSdfReader() {
 
 ImportedMechanism ReadSdf(const std::filesystem::path& path, const ImportOptions& options) {
   const std::string file = path.string(), text = ReadTextFile(path);
+  // libsdformat would try whether it is URDF, and say so on the terminal.
+  if (text.find("<sdf") == text.npos) throw FileErrors(file, "there is no <sdf> in it");
+  if (text.find("</sdf>") == text.npos) throw FileErrors(file, "it ends without </sdf>: cut off?");
+  RequireShallowXml(text, file);
   sdf::Console::Instance()->SetQuiet(true);
   sdf::ParserConfig config;
   config.SetWarningsPolicy(sdf::EnforcementPolicy::LOG);

@@ -9,6 +9,7 @@
 #include "vmech/mechanisms/document.h"
 #include "vmech/mechanisms/exchange/mechanism_builder.h"
 #include "vmech/mechanisms/exchange/urdf.h"
+#include "vmech/mechanisms/exchange/xml_text.h"
 #include "vmech/mechanisms/mass_properties.h"
 
 namespace vmech {
@@ -56,7 +57,7 @@ class Reader {
   Reader(std::string file, const urdf::ModelInterface& model, MechanismBuilder* builder)
       : file_(std::move(file)), builder_(*builder) {
     RequireTree(model);
-    AddLink(*model.getRoot());
+    AddLinks(*model.getRoot());
     if (left_out_) builder_.Note("visuals and collisions are left out");
   }
 
@@ -74,16 +75,23 @@ class Reader {
     }
   }
 
-  int AddLink(const urdf::Link& link) {
-    const int index = builder_.AddLink(link.name, InertialOf(link), {});
-    left_out_ |= !link.visual_array.empty() || !link.collision_array.empty();
-    for (const auto& joint : link.child_joints) {
-      const auto child =
-          std::find_if(link.child_links.begin(), link.child_links.end(),
-                       [&](const auto& each) { return each->name == joint->child_link_name; });
-      if (child != link.child_links.end()) AddJoint(*joint, index, AddLink(**child));
+  /// From the root on, depth first; without recursion, whatever the file is.
+  void AddLinks(const urdf::Link& root) {
+    struct Entry {
+      const urdf::Link* link;
+      int parent;
+    };
+    std::vector<Entry> waiting{{&root, -1}};
+    while (!waiting.empty()) {
+      const auto [link, parent] = waiting.back();
+      waiting.pop_back();
+      const int index = builder_.AddLink(link->name, InertialOf(*link), {});
+      left_out_ |= !link->visual_array.empty() || !link->collision_array.empty();
+      if (parent >= 0) AddJoint(*link->parent_joint, parent, index);
+      for (auto child = link->child_links.rbegin(); child != link->child_links.rend(); ++child) {
+        waiting.push_back({child->get(), index});
+      }
     }
-    return index;
   }
 
   void AddJoint(const urdf::Joint& joint, int parent, int child) {
@@ -145,6 +153,7 @@ bool HasUrdfReader() {
 
 ImportedMechanism ReadUrdf(const std::filesystem::path& path, const ImportOptions& options) {
   const std::string file = path.string(), text = ReadTextFile(path);
+  RequireShallowXml(text, file);
   urdf::ModelInterfaceSharedPtr model;
   {
     Messages messages;

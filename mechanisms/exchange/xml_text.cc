@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "vmech/mechanisms/document.h"
+
 namespace vmech {
 namespace {
 
@@ -63,6 +65,22 @@ void XmlText::Comment(std::string_view text) {
   std::string safe(text);
   for (size_t at; (at = safe.find("--")) != safe.npos;) safe.replace(at, 2, "- ");
   text_ += fmt::format("{:{}}<!-- {} -->\n", "", 2 * open_.size(), safe);
+}
+
+void RequireShallowXml(std::string_view text, const std::string& file) {
+  int depth = 0;
+  for (size_t at = text.find('<'); at != text.npos; at = text.find('<', at + 1)) {
+    const size_t end = text.find('>', at);
+    if (end == text.npos) return;  // the parser's business
+    const char next = text[at + 1];
+    if (next == '/') {
+      --depth;
+    } else if (next != '!' && next != '?' && text[end - 1] != '/') {
+      ++depth;
+    }
+    if (depth <= kMaxNesting) continue;
+    throw FileErrors(file, fmt::format("elements are nested more than {} deep", kMaxNesting));
+  }
 }
 
 std::string XmlNumber(double value) {

@@ -31,6 +31,10 @@ class XmlText {
   std::vector<std::string> open_;
 };
 
+/// Parsers of XML recurse into nested elements. @throws FileErrors if they are more than
+/// kMaxNesting deep (document.h).
+void RequireShallowXml(std::string_view text, const std::string& file);
+
 /// Numbers as the shortest decimals that read back as the same, "1 0.5 -2e-06".
 std::string XmlNumber(double value);
 std::string XmlNumbers(const Vector3d& v);

@@ -204,6 +204,13 @@ TEST(SdfWriter, EscapesNames) {
   EXPECT_EQ(ReadText(WriteSdf(mechanism).text).mechanism.links[1].name, "<crank> & 'rod'");
 }
 
+TEST_F(Sdf, OfWhichTheEndIsMissingIsRefusedWhereverItEnds) {
+  const std::string text = WriteSdf(Example("crank")).text;
+  for (size_t length = 0; length + 8 < text.size(); length += 61) {
+    EXPECT_THROW(ReadText(text.substr(0, length)), FileErrors) << length;
+  }
+}
+
 struct Malformed {
   const char* subject;
   std::string text;
@@ -236,7 +243,7 @@ std::string JointOf(const std::string& type, const std::string& more = "") {
 INSTANTIATE_TEST_SUITE_P(
     All, MalformedSdf,
     testing::Values(
-        Malformed{"Empty", "", ""}, Malformed{"NotXml", "vmech: \"1.0\"\n", ""},
+        Malformed{"Empty", "", ""}, Malformed{"NotXml", "vmech: \"1.0\"\n", "no <sdf>"},
         Malformed{"Truncated", Model("").substr(0, 120), ""},
         Malformed{"Binary",
                   std::string("\x7f"
@@ -253,6 +260,10 @@ INSTANTIATE_TEST_SUITE_P(
                         "</joint>"),
                   "nobody"},
         Malformed{"DuplicateName", Model("", "<link name='arm'/>"), "arm"},
+        Malformed{"PoseNotANumber", Model("", "<link name='x'><pose>nan 0 0 0 0 0</pose></link>"),
+                  "pose"},
+        Malformed{"IncludeOfNothing", Model("", "<include><uri>model://nobody</uri></include>"),
+                  "model://nobody"},
         Malformed{"Gearbox", JointOf("gearbox", "<axis><xyz>0 0 1</xyz></axis>"), "gearbox"},
         Malformed{"UnknownJointType", JointOf("revolut"), "revolut"},
         Malformed{"ZeroAxis", JointOf("revolute", "<axis><xyz>0 0 0</xyz></axis>"), ""},

@@ -131,6 +131,23 @@ TEST_F(Urdf, NamesBothJointsOfALinkWithTwoParents) {
   }
 }
 
+TEST_F(Urdf, ReadsALongChainWithoutRunningOutOfStack) {
+  std::string text = "<robot name='r'><link name='l0'/>";
+  constexpr int kLinks = 20000;
+  for (int i = 1; i < kLinks; ++i) {
+    const std::string name = "l" + std::to_string(i);
+    text += "<link name='" + name + "'/>" +
+            Joint("j" + name, "fixed", "l" + std::to_string(i - 1), name);
+  }
+  EXPECT_EQ(ReadText(text + "</robot>").mechanism.joints.size(), size_t{kLinks - 1});
+}
+
+TEST_F(Urdf, OfWhichTheEndIsMissingIsRefusedWhereverItEnds) {
+  for (size_t length = 0; length + 8 < kFourBar.size(); length += 13) {
+    EXPECT_THROW(ReadText(kFourBar.substr(0, length)), FileErrors) << length;
+  }
+}
+
 struct Malformed {
   const char* subject;
   std::string text;
@@ -155,6 +172,12 @@ TEST_P(MalformedUrdf, IsRefusedWithAMessage) {
   }
 }
 
+std::string Repeated(const std::string& text, int count) {
+  std::string all;
+  for (int i = 0; i < count; ++i) all += text;
+  return all;
+}
+
 std::string Robot(const std::string& parts) {
   return "<robot name='r'><link name='a'/>" + parts + "</robot>";
 }
@@ -173,6 +196,12 @@ INSTANTIATE_TEST_SUITE_P(
                   "<robot name='r'>" + Link("a") + Link("b") + Joint("j", "fixed", "a", "b") +
                       Joint("k", "fixed", "b", "a") + "</robot>",
                   "root"},
+        Malformed{
+            "DeeplyNested",
+            "<robot name='r'>" + Repeated("<a>", 100000) + Repeated("</a>", 100000) + "</robot>",
+            "nested more than 64 deep"},
+        Malformed{"MassNotANumber",
+                  Robot("<link name='b'><inertial><mass value='nan'/></inertial></link>"), "nan"},
         Malformed{"Floating", Robot(Link("b") + Joint("j", "floating", "a", "b")), "floating"},
         Malformed{"UnknownType", Robot(Link("b") + Joint("j", "revolut", "a", "b")), "revolut"},
         Malformed{"ZeroAxis",
