@@ -31,6 +31,17 @@ std::string Lower(std::string_view text) {
   return lower;
 }
 
+/// Takes off the number that FreeCAD puts behind a name that comes twice, where only a suffix can
+/// stand before it: "guide__prismatic001".
+void TakeNumber(std::string* name) {
+  constexpr size_t kDigits = 3;
+  if (name->size() <= kDigits) return;
+  const auto digits = name->end() - kDigits;
+  if (!std::all_of(digits, name->end(), [](unsigned char c) { return std::isdigit(c); })) return;
+  const std::string rest = Lower(name->substr(0, name->size() - kDigits));
+  if (rest.ends_with("_inv") || rest.find("__") != std::string::npos) name->resize(rest.size());
+}
+
 bool TakeSuffix(std::string* name, std::string_view suffix) {
   if (name->size() <= suffix.size() || !Lower(*name).ends_with(suffix)) return false;
   name->resize(name->size() - suffix.size());
@@ -87,6 +98,7 @@ FrameName ParseFrameName(std::string_view name) {
   if (prefix == kPrefixes.end()) return frame;
   frame.role = prefix->role;
   frame.name = name.substr(prefix->text.size());
+  TakeNumber(&frame.name);
   frame.inverted = TakeSuffix(&frame.name, "_inv");
   const std::string word = TakeType(&frame.name);
   frame.inverted = TakeSuffix(&frame.name, "_inv") || frame.inverted;

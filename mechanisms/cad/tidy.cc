@@ -6,9 +6,10 @@
 namespace vmech {
 namespace {
 
-constexpr double kRelative = 1e-12;                           // of axes and inertias
-constexpr double kLengthStep = 1e-12;                         // [m]
-constexpr double kAngleStep = 1e-9 * std::numbers::pi / 180;  // [rad]
+constexpr double kRelative = 1e-12;    // of axes and inertias
+constexpr double kLengthStep = 1e-12;  // [m]
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kStepsPerDegree = 1e9;
 
 double Rounded(double value, double step) {
   // Division by a whole number, so that 0.15 m comes out as the double nearest to it.
@@ -17,7 +18,7 @@ double Rounded(double value, double step) {
 }
 
 double RoundedAngle(double value) {
-  return std::round(value / kAngleStep) * 1e-9 / 180 * std::numbers::pi + 0.0;
+  return std::round(value / kDegree * kStepsPerDegree) / kStepsPerDegree * kDegree + 0.0;
 }
 
 void TidyLengths(Vector3d* v) {

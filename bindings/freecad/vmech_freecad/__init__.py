@@ -1,0 +1,1 @@
+"""Mechanisms from FreeCAD documents: marks on parts, the vmech command, loads on the parts."""
