@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vmech/mechanisms/freedoms.h"
 #include "vmech/mechanisms/mass_properties.h"
 
 namespace vmech {
@@ -17,36 +18,17 @@ struct Elementary {
   int freedom;
 };
 
-/// The cyclic permutation of the axes that brings z onto the given one.
-Matrix3d ZOnto(int axis) {
-  Matrix3d R = Matrix3d::Zero();
-  R(axis, 2) = R((axis + 1) % 3, 0) = R((axis + 2) % 3, 1) = 1;
-  return R;
-}
-
-/// The freedoms of a joint from its first anchor to its second.
+/// The freedoms of a joint from its first anchor to its second; one that is none for a weld.
 std::vector<Elementary> FreedomsInOrder(JointType type) {
-  using enum DhMotion;
-  const Matrix3d x = ZOnto(0), y = ZOnto(1), z = ZOnto(2);
-  switch (type) {
-    case JointType::kRevolute:
-      return {{kRotation, z, 0}};
-    case JointType::kPrismatic:
-      return {{kTranslation, z, 0}};
-    case JointType::kCylindrical:
-      return {{kTranslation, z, 0}, {kRotation, z, 1}};
-    case JointType::kScrew:
-      return {{kScrew, z, 0}};
-    case JointType::kUniversal:
-      return {{kRotation, x, 0}, {kRotation, y, 1}};
-    case JointType::kSpherical:
-      return {{kRotation, x, 0}, {kRotation, y, 1}, {kRotation, z, 2}};
-    case JointType::kPlanar:
-      return {{kTranslation, x, 0}, {kTranslation, y, 1}, {kRotation, z, 2}};
-    case JointType::kWeld:
-      return {{kFixed, z, 0}};
+  if (type == JointType::kWeld) return {{DhMotion::kFixed, Matrix3d::Identity(), 0}};
+  std::vector<Elementary> chain;
+  for (const ElementaryFreedom& freedom : ElementaryFreedoms(type)) {
+    const DhMotion motion = type == JointType::kScrew ? DhMotion::kScrew
+                            : freedom.rotates         ? DhMotion::kRotation
+                                                      : DhMotion::kTranslation;
+    chain.push_back({motion, ZOnto(freedom.axis), static_cast<int>(chain.size())});
   }
-  return {};
+  return chain;
 }
 
 /// Backwards, about and along the opposite axes: half a turn about x of each frame.

@@ -23,4 +23,33 @@ bool Rotates(JointType type) {
   return std::find(rotates.begin(), rotates.end(), true) != rotates.end();
 }
 
+std::vector<ElementaryFreedom> ElementaryFreedoms(JointType type) {
+  constexpr ElementaryFreedom kTurnX{true, 0}, kTurnY{true, 1}, kTurnZ{true, 2};
+  constexpr ElementaryFreedom kShiftX{false, 0}, kShiftY{false, 1}, kShiftZ{false, 2};
+  switch (type) {
+    case JointType::kRevolute:
+    case JointType::kScrew:
+      return {kTurnZ};
+    case JointType::kPrismatic:
+      return {kShiftZ};
+    case JointType::kCylindrical:
+      return {kShiftZ, kTurnZ};
+    case JointType::kUniversal:
+      return {kTurnX, kTurnY};
+    case JointType::kSpherical:
+      return {kTurnX, kTurnY, kTurnZ};
+    case JointType::kPlanar:
+      return {kShiftX, kShiftY, kTurnZ};
+    case JointType::kWeld:
+      return {};
+  }
+  return {};
+}
+
+Matrix3d ZOnto(int axis) {
+  Matrix3d R = Matrix3d::Zero();
+  R(axis, 2) = R((axis + 1) % 3, 0) = R((axis + 2) % 3, 1) = 1;
+  return R;
+}
+
 }  // namespace vmech

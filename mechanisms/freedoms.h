@@ -18,4 +18,18 @@ const Freedoms& FreedomsOfType(JointType type);
 /// Is any freedom a rotation?
 bool Rotates(JointType type);
 
+/// A turn about, or a shift along, an axis of the joint's frame: 0, 1, 2 for x, y, z.
+struct ElementaryFreedom {
+  bool rotates;
+  int axis;
+};
+
+/// The freedoms of a joint in the order of its lists, from its first anchor to its second: X_FM is
+/// the product of their motions. The shift of a screw goes with its turn; a spherical joint, whose
+/// coordinates are a quaternion, is here three turns about x, y, z.
+std::vector<ElementaryFreedom> ElementaryFreedoms(JointType type);
+
+/// The cyclic permutation of the axes that brings z onto the given one.
+Matrix3d ZOnto(int axis);
+
 }  // namespace vmech

@@ -2,46 +2,15 @@
 
 #include <fmt/format.h>
 
+#include "vmech/mechanisms/freedoms.h"
+
 namespace vmech {
 namespace {
 
-/// A freedom along or about a unit vector of the joint's frame.
-struct Elementary {
-  bool rotates;
-  int axis;
-};
-
-std::vector<Elementary> FreedomsInOrder(JointType type) {
-  switch (type) {
-    case JointType::kRevolute:
-    case JointType::kScrew:
-      return {{true, 2}};
-    case JointType::kPrismatic:
-      return {{false, 2}};
-    case JointType::kCylindrical:
-      return {{false, 2}, {true, 2}};
-    case JointType::kUniversal:
-      return {{true, 0}, {true, 1}};
-    case JointType::kPlanar:
-      return {{false, 0}, {false, 1}, {true, 2}};
-    case JointType::kSpherical:
-    case JointType::kWeld:
-      return {};
-  }
-  return {};
-}
-
-Posed Moved(const Elementary& freedom, double q) {
+Posed Moved(const ElementaryFreedom& freedom, double q) {
   const Vector3d axis = Vector3d::Unit(freedom.axis);
   if (freedom.rotates) return {Eigen::AngleAxisd(q, axis).toRotationMatrix(), Vector3d::Zero()};
   return {Matrix3d::Identity(), q * axis};
-}
-
-/// The cyclic permutation of the axes that brings z onto the given one.
-Matrix3d ZOnto(int axis) {
-  Matrix3d R = Matrix3d::Zero();
-  R(axis, 2) = R((axis + 1) % 3, 0) = R((axis + 2) % 3, 1) = 1;
-  return R;
 }
 
 AnchorId AddAnchor(Link* link, int index, std::string name, const Posed& X_LA) {
@@ -49,9 +18,9 @@ AnchorId AddAnchor(Link* link, int index, std::string name, const Posed& X_LA) {
   return {index, static_cast<int>(link->anchors.size()) - 1};
 }
 
-/// Appends the chain of one joint. Load friction and stiffness stay with its last part.
+/// Appends the chain of one joint. Load friction stays with its last part, stiffness is lost.
 void AppendChain(const Joint& joint, Mechanism* mechanism) {
-  const std::vector<Elementary> chain = FreedomsInOrder(joint.type);
+  const std::vector<ElementaryFreedom> chain = ElementaryFreedoms(joint.type);
   AnchorId first = joint.first;
   Posed X_LF = mechanism->anchor(first).X_LA;
   for (size_t i = 0; i < chain.size(); ++i) {
@@ -59,7 +28,7 @@ void AppendChain(const Joint& joint, Mechanism* mechanism) {
     const std::string name = fmt::format("{}_{}", joint.name, i + 1);
     const Posed turn{ZOnto(chain[i].axis), Vector3d::Zero()};
     const AnchorId F = AddAnchor(&mechanism->links[first.link], first.link, name, X_LF * turn);
-    if (!last) mechanism->links.push_back({name, {}, {}});
+    if (!last) mechanism->links.push_back({name + "_link", {}, {}});
     const int child = last ? joint.second.link : static_cast<int>(mechanism->links.size()) - 1;
     const Posed X_LM = last ? mechanism->anchor(joint.second).X_LA : Posed();
     const AnchorId M = AddAnchor(&mechanism->links[child], child, name, X_LM * turn);
@@ -83,7 +52,7 @@ Posed StartPose(const Joint& joint) {
   if (joint.type == JointType::kSpherical) {
     return {Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix(), Vector3d::Zero()};
   }
-  const std::vector<Elementary> freedoms = FreedomsInOrder(joint.type);
+  const std::vector<ElementaryFreedom> freedoms = ElementaryFreedoms(joint.type);
   Posed X;
   for (size_t i = 0; i < freedoms.size(); ++i) X = X * Moved(freedoms[i], q[i]);
   if (joint.type == JointType::kScrew) X.p.z() = joint.pitch * q[0];
@@ -105,7 +74,8 @@ std::vector<Posed> LinkStartPoses(const Mechanism& mechanism, const SpanningTree
 
 std::vector<StartAxis> StartAxes(const Joint& joint, const Posed& X_WF) {
   std::vector<StartAxis> axes;
-  const std::vector<Elementary> freedoms = FreedomsInOrder(joint.type);
+  if (joint.type == JointType::kSpherical) return axes;
+  const std::vector<ElementaryFreedom> freedoms = ElementaryFreedoms(joint.type);
   Posed X = X_WF;
   for (size_t i = 0; i < freedoms.size(); ++i) {
     axes.push_back(

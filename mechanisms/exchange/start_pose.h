@@ -28,7 +28,7 @@ struct StartAxis {
 std::vector<StartAxis> StartAxes(const Joint& joint, const Posed& X_WF);
 
 /// The same mechanism with its cylindrical and planar joints made up of prismatic and revolute
-/// ones, with links without mass between them; these take the name of the joint, with a number.
+/// ones, with links without mass between them; they take the name of the joint, with a number.
 Mechanism WithoutCompositeJoints(const Mechanism& mechanism);
 
 }  // namespace vmech

@@ -146,6 +146,25 @@ TEST_F(Sdf, CountsLimitsAndSpringsFromTheStart) {
   EXPECT_EQ(after.passive[0].rest, 0.25);
 }
 
+TEST_F(Sdf, TakesCompositeJointsApart) {
+  Mechanism mechanism = Example("crank");
+  const AnchorId F = mechanism.joints[0].first, M = mechanism.joints[0].second;
+  mechanism.joints = {MakeJoint("table", JointType::kPlanar, F, M)};
+  mechanism.joints[0].start = {0.1, 0.2, 0.3};
+  const ExportedText exported = WriteSdf(mechanism);
+  const Mechanism after = ReadText(exported.text).mechanism;
+  ASSERT_EQ(after.joints.size(), 3u);
+  EXPECT_EQ(after.joints[0].type, JointType::kPrismatic);
+  EXPECT_EQ(after.joints[1].type, JointType::kPrismatic);
+  EXPECT_EQ(after.joints[2].name, "table_3");
+  EXPECT_EQ(after.links.size(), mechanism.links.size() + 2);
+  EXPECT_NE(exported.notes[0].find("planar, which SDF has not"), std::string::npos);
+  const auto poses = LinkStartPoses(mechanism, FindSpanningTree(mechanism));
+  const auto poses_after = LinkStartPoses(after, FindSpanningTree(after));
+  EXPECT_LT((poses[1].R - poses_after[1].R).norm(), kSixteenDigits);
+  EXPECT_LT((poses[1].p - poses_after[1].p).norm(), kSixteenDigits);
+}
+
 TEST_F(Sdf, KeepsScrewsRightHanded) {
   Mechanism mechanism = Example("crank");
   mechanism.joints[0].type = JointType::kScrew;
