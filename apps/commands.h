@@ -65,10 +65,20 @@ struct HapticArguments {
   double scale = 0;                  ///< virtual: of all forces; 0: what the device allows
   double stiffness = 0;              ///< paper: of the constraint [N/m]; 0: what the device allows
   double inertia = 0;                ///< paper: share that is felt; 0: what the device allows
+  bool gripper = false;              ///< hold while the gripper is closed
   std::filesystem::path record;      ///< empty: no recording
   bool free_running = false;         ///< as fast as it computes
+  bool post_mortem = true;           ///< write the last ticks after a fault
   bool quiet = false;
 };
 int RunHaptic(const HapticArguments& arguments);
+
+struct ReplayArguments {
+  std::filesystem::path recording;  ///< of vmech haptic
+  std::filesystem::path file;       ///< mechanism or study; empty: that of the recording
+  std::filesystem::path motion;     ///< where the hand's motion goes as a table; empty: nowhere
+  bool quiet = false;
+};
+int RunReplay(const ReplayArguments& arguments);
 
 }  // namespace vmech

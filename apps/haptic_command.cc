@@ -5,11 +5,13 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <stdexcept>
 #include <thread>
 
 #include "vmech/apps/commands.h"
 #include "vmech/apps/haptic_session.h"
+#include "vmech/hw_interface/replay_master.h"
 #include "vmech/hw_interface/runner.h"
 #include "vmech/hw_interface/stability.h"
 #include "vmech/kinematics/assembly.h"
@@ -92,40 +94,53 @@ RunnerOptions OptionsOf(const HapticArguments& arguments, const Matrix3d& R_WD,
   RunnerOptions options;
   options.seconds = arguments.seconds;
   options.record = !arguments.record.empty();
-  options.post_mortem = arguments.file.stem().string() + "-fault.csv";
+  if (arguments.post_mortem) options.post_mortem = arguments.file.stem().string() + "-fault.csv";
   options.R_WD = R_WD;
   options.safety = safety;
+  options.gripper = arguments.gripper;
+  options.notes = {{"file", arguments.file.string()},
+                   {"grasp", arguments.grasp},
+                   {"coupling", arguments.coupling},
+                   {"scale", fmt::to_string(arguments.scale)},
+                   {"stiffness", fmt::to_string(arguments.stiffness)},
+                   {"inertia", fmt::to_string(arguments.inertia)},
+                   {"gripper", fmt::to_string(static_cast<int>(arguments.gripper))}};
   if (arguments.free_running) options.realtime.reset();
   return options;
 }
 
-}  // namespace
+/// A mechanism that is held, where the hand takes hold.
+struct HeldMechanism {
+  explicit HeldMechanism(const HapticArguments& arguments)
+      : subject(ReadSubject(arguments.file, arguments.grasp)),
+        tree(BuildKinematicTree(subject.mechanism, KeepSprings(subject.mechanism))),
+        q(StartPose(tree, arguments.file)),
+        R_WD(DeviceAxes(subject.mechanism)) {
+    const GraspFrame grasp = GraspFrameOf(tree, subject.grasp);
+    TreeWorkspace<double> ws(tree);
+    ForwardKinematics(tree, q.data(), &ws);
+    X_WG = PoseInWorld(ws, grasp.node, grasp.X_BG);
+  }
 
-int RunHaptic(const HapticArguments& arguments) {
-  const HapticSubject subject = ReadSubject(arguments.file, arguments.grasp);
-  const KinematicTree tree = BuildKinematicTree(subject.mechanism, KeepSprings(subject.mechanism));
-  const VectorXd q = StartPose(tree, arguments.file);
-  const GraspFrame grasp = GraspFrameOf(tree, subject.grasp);
-  TreeWorkspace<double> ws(tree);
-  ForwardKinematics(tree, q.data(), &ws);
+  HapticSubject subject;
+  KinematicTree tree;
+  VectorXd q;
+  Matrix3d R_WD;
+  Posed X_WG;
+};
 
-  MasterRequest request{arguments.master,
-                        arguments.rate,
-                        ParseGrip(arguments.grip),
-                        DeviceAxes(subject.mechanism),
-                        PoseInWorld(ws, grasp.node, grasp.X_BG),
-                        subject.law};
-  const std::unique_ptr<Master> master = MakeMaster(request);
-  master->Configure();
+/// Runs the loop of a configured master and reports.
+int Hold(const HeldMechanism& held, HapticArguments arguments, Master* master) {
+  arguments.grasp = held.subject.mechanism.grasps[held.subject.grasp].name;
   const Rendering rendering =
       MakeRendering({arguments.coupling, arguments.scale, arguments.stiffness, arguments.inertia},
-                    tree, subject.grasp, q, master->info());
+                    held.tree, held.subject.grasp, held.q, master->info());
   WallClock wall;
   FreeRunningClock free;
   LoopClock* clock = &wall;
   if (arguments.free_running) clock = &free;
-  Runner runner(OptionsOf(arguments, request.R_WD, rendering.safety), master.get(),
-                rendering.tick.get(), clock);
+  Runner runner(OptionsOf(arguments, held.R_WD, rendering.safety), master, rendering.tick.get(),
+                clock);
   if (!arguments.quiet) fmt::print("{}{}", BoundsReport(master->info()), rendering.report);
   RunSummary summary;
   {
@@ -136,6 +151,69 @@ int RunHaptic(const HapticArguments& arguments) {
   if (!arguments.record.empty()) WriteRecording(arguments.record, runner.Kept());
   if (!arguments.quiet) fmt::print("{}{}", summary.FullReport(), rendering.tick->FullReport());
   return summary.status == RunStatus::kFault ? kNoSolution : kSuccess;
+}
+
+/// @throws std::invalid_argument: a recording that cannot be read is bad input.
+Recording ReadInput(const std::filesystem::path& file) {
+  try {
+    return ReadRecording(file);
+  } catch (const std::runtime_error& error) {
+    throw std::invalid_argument(error.what());
+  }
+}
+
+/// The arguments that made a recording. @throws std::invalid_argument if it does not say.
+HapticArguments ArgumentsOf(const Recording& recording, const ReplayArguments& replay) {
+  HapticArguments arguments;
+  arguments.file =
+      replay.file.empty() ? std::filesystem::path(recording.Note("file")) : replay.file;
+  if (arguments.file.empty() || recording.Note("coupling").empty()) {
+    throw std::invalid_argument(
+        fmt::format("{}: does not say what was held; only recordings of `vmech haptic --record` do",
+                    replay.recording.string()));
+  }
+  arguments.grasp = recording.Note("grasp");
+  arguments.coupling = recording.Note("coupling");
+  const auto number = [&](const char* key) {
+    const std::string text = recording.Note(key);
+    char* end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    if (!text.empty() && *end == 0) return value;
+    throw std::invalid_argument(
+        fmt::format("{}: '# note {} {}' is not a number", replay.recording.string(), key, text));
+  };
+  arguments.scale = number("scale");
+  arguments.stiffness = number("stiffness");
+  arguments.inertia = number("inertia");
+  arguments.gripper = number("gripper") != 0;
+  arguments.seconds = recording.period * static_cast<double>(recording.ticks.size());
+  arguments.free_running = true;
+  arguments.post_mortem = false;
+  arguments.quiet = replay.quiet;
+  return arguments;
+}
+
+}  // namespace
+
+int RunHaptic(const HapticArguments& arguments) {
+  const HeldMechanism held(arguments);
+  const std::unique_ptr<Master> master =
+      MakeMaster({arguments.master, arguments.rate, ParseGrip(arguments.grip), held.R_WD, held.X_WG,
+                  held.subject.law, arguments.gripper});
+  master->Configure();
+  return Hold(held, arguments, master.get());
+}
+
+int RunReplay(const ReplayArguments& replay) {
+  const Recording recording = ReadInput(replay.recording);
+  const HapticArguments arguments = ArgumentsOf(recording, replay);
+  const HeldMechanism held(arguments);
+  if (!replay.motion.empty()) {
+    WriteHandMotion(replay.motion, recording, held.R_WD, held.X_WG);
+  }
+  ReplayMaster master(recording, ReplayKind::kSession);
+  master.Configure();
+  return Hold(held, arguments, &master);
 }
 
 }  // namespace vmech

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <fstream>
 #include <stdexcept>
 
 #include "vmech/apps/study_reader.h"
@@ -63,6 +65,13 @@ HandMotion InDeviceAxes(const HandLaw& law, const Registration& registration) {
   };
 }
 
+/// Moment on the gripper [N m]: closes after half a second, opens for a second every four.
+double LetGoNowAndThen(double time) {
+  constexpr double kFirm = 0.4;
+  const bool closes = time > 0.5 && std::fmod(time, 4.0) < 3;
+  return closes ? kFirm : -kFirm;
+}
+
 std::unique_ptr<Master> MakeSimulated(const MasterRequest& request) {
   constexpr double kReach = 0.05;  // [m] of a wandering hand
   constexpr double kTurn = 0.2;    // [rad]
@@ -74,6 +83,7 @@ std::unique_ptr<Master> MakeSimulated(const MasterRequest& request) {
   options.motion = request.law
                        ? InDeviceAxes(*request.law, GraspedAt(request.R_WD, X_DH, request.X_WG))
                        : Wander(X_DH, kReach, kTurn, 1);
+  if (request.gripper) options.squeeze = LetGoNowAndThen;
   return std::make_unique<SimulatedMaster>(options);
 }
 
@@ -183,6 +193,31 @@ std::unique_ptr<Master> MakeMaster(const MasterRequest& request) {
       fmt::format("master '{}' is not one of simulated, spacenav, replay:FILE, udp:HOST:PORT, "
                   "plugin:LIBRARY[:PARAMETERS]",
                   word));
+}
+
+void WriteHandMotion(const std::filesystem::path& file, const Recording& recording,
+                     const Matrix3d& R_WD, const Posed& X_WG) {
+  std::ofstream out(file);
+  out << "t,x,y,z,qw,qx,qy,qz\n";
+  std::optional<Registration> registration;
+  std::uint64_t first = 0, last = 0;
+  for (const TickRecord& tick : recording.ticks) {
+    const MasterState& state = tick.state;
+    if (tick.io != IoStatus::kOk || (registration && state.sequence <= last)) continue;
+    if (!registration) {
+      registration = GraspedAt(R_WD, state.X_DH, X_WG);
+      first = state.sequence;
+    }
+    last = state.sequence;
+    const Posed X_WH = registration->HandInWorld(state.X_DH);
+    const Eigen::Quaterniond turn(X_WH.R);
+    out << fmt::format("{},{},{},{},{},{},{},{}\n",
+                       static_cast<double>(last - first) * recording.period, X_WH.p.x(), X_WH.p.y(),
+                       X_WH.p.z(), turn.w(), turn.x(), turn.y(), turn.z());
+  }
+  if (!out.flush()) {
+    throw std::runtime_error(fmt::format("{}: cannot be written", file.string()));
+  }
 }
 
 ContactLaw LawFor(const DeviceInfo& device, double stiffness) {

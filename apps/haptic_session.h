@@ -40,8 +40,16 @@ struct MasterRequest {
   Matrix3d R_WD = Matrix3d::Identity();
   Posed X_WG;
   std::optional<HandLaw> law;
+  bool gripper = false;  ///< the simulated operator works it
 };
 std::unique_ptr<Master> MakeMaster(const MasterRequest& request);
+
+/// The hand of a recording in the world as a table t, x, y, z, qw, qx, qy, qz for a study's
+/// `motion: {grasp: .., table: ..}` in metres, from the first sample on; the hand took hold at
+/// X_WG.
+/// @throws std::runtime_error if the file cannot be written.
+void WriteHandMotion(const std::filesystem::path& file, const Recording& recording,
+                     const Matrix3d& R_WD, const Posed& X_WG);
 
 /// Stiffness and law of the constraint for a device: its own bounds, or the wanted stiffness if
 /// that is lower. A device without force gets a stiffness that only weighs positions against

@@ -161,10 +161,29 @@ void AddHaptic(CLI::App* app, vmech::HapticArguments* haptic) {
       ->add_option("--inertia", haptic->inertia,
                    "paper: share of the inertia that is felt (default: what the device can render)")
       ->check(CLI::Range(0.0, 1.0, "0..1"));
+  command->add_flag("--gripper", haptic->gripper,
+                    "hold while the device's gripper is closed, the link that is nearest then; the "
+                    "simulated operator lets go for a second now and then");
   command->add_option("--record", haptic->record, "write every tick to this file")
       ->type_name("FILE");
   command->add_flag("--free", haptic->free_running, "as fast as it computes, in simulated time");
   command->add_flag("-q,--quiet", haptic->quiet, "print nothing but errors");
+}
+
+constexpr const char* kReplayHelp =
+    "Runs a recording of vmech haptic --record through the same loop again and prints the same\n"
+    "report. With --motion the hand becomes the table of a study: motion: {grasp: .., table: ..}";
+
+void AddReplay(CLI::App* app, vmech::ReplayArguments* replay) {
+  CLI::App* command = app->add_subcommand("replay", kReplayHelp);
+  command->add_option("RECORDING", replay->recording, "of vmech haptic")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("--file", replay->file, "mechanism or study (default: that of the recording)")
+      ->type_name("FILE");
+  command->add_option("--motion", replay->motion, "write the hand's motion as a table")
+      ->type_name("FILE");
+  command->add_flag("-q,--quiet", replay->quiet, "print nothing but errors");
 }
 
 int Run(int argc, char** argv) {
@@ -219,6 +238,8 @@ int Run(int argc, char** argv) {
   AddIk(&app, &ik);
   vmech::HapticArguments haptic;
   AddHaptic(&app, &haptic);
+  vmech::ReplayArguments replay;
+  AddReplay(&app, &replay);
   vmech::ExportArguments export_arguments;
   AddExport(&app, &export_arguments);
 
@@ -231,6 +252,7 @@ int Run(int argc, char** argv) {
                    : loads_command->parsed()      ? RunLoads(loads)
                    : app.got_subcommand("ik")     ? RunIk(ik)
                    : app.got_subcommand("haptic") ? RunHaptic(haptic)
+                   : app.got_subcommand("replay") ? RunReplay(replay)
                    : app.got_subcommand("export") ? RunExport(export_arguments)
                                                   : RunCompare(compare);
   if (std::fflush(stdout) != 0) throw vmech::FileErrors("standard output", "cannot be written");

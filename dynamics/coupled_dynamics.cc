@@ -97,16 +97,25 @@ CoupledDynamics::CoupledDynamics(const KinematicTree& tree, const GraspFrame& gr
 
 void CoupledDynamics::Stop() noexcept {
   v_.setZero();
+  lost_ = 0;
   ForwardVelocities(tree_, v_.data(), &pose_.ws());
+}
+
+void CoupledDynamics::TakeHold(const GraspFrame& grasp) noexcept {
+  pose_.SetGrasp(grasp);
+  pose_.Set(q_);
+  ForwardVelocities(tree_, v_.data(), &pose_.ws());
+  coupled_ = true;
 }
 
 CoupledStatus CoupledDynamics::Step(const Posed& X_WH, const Vector6d& V_WH) noexcept {
   X_WH_ = X_WH;
   V_WH_ = V_WH;
   e1_ = HandError(pose_.X_WG(), X_WH);
+  const double before = Energy();
   BiasForces();
   BuildSystem();
-  AddCoupling();
+  if (coupled_) AddCoupling();
   if (!SolveWithLimits()) return CoupledStatus::kFailed;
   if (Slip()) {
     BuildSystem();
@@ -114,7 +123,9 @@ CoupledStatus CoupledDynamics::Step(const Posed& X_WH, const Vector6d& V_WH) noe
     if (!SolveWithLimits()) return CoupledStatus::kFailed;
   }
   FindWrenches();
-  return Move();
+  const CoupledStatus status = Move();
+  if (status == CoupledStatus::kMoved) KeepEnergy(before);
+  return status;
 }
 
 /// h(q, v), and -T C' v, of which the next velocities must make up for.
@@ -153,6 +164,10 @@ void CoupledDynamics::AddCoupling() noexcept {
 /// The coupling's wrench at the end of the step. True if it is larger than it may be; then w_ is
 /// shortened to that.
 bool CoupledDynamics::Slip() noexcept {
+  if (!coupled_) {
+    w_.setZero();
+    return slipping_ = false;
+  }
   const Vector6d V_WG = pose_.J() * next_v_;
   w_ = coupling_.stiffness.cwiseProduct(e1_ - T_ * V_WG) +
        coupling_.damping.cwiseProduct(V_WH_ - V_WG);
@@ -291,12 +306,34 @@ bool CoupledDynamics::Close() noexcept {
   return closure_ <= kStillClosed;
 }
 
+/// What the step has gained beyond the damper's work at most gives back what steps have lost; the
+/// rest is taken out of the velocities.
+void CoupledDynamics::KeepEnergy(double before) noexcept {
+  constexpr double kMemory = 0.05;  // of the kinetic energy that losses are remembered for
+  const Vector6d V = V_WG();
+  const double dragged = T_ * coupling_.damping.cwiseProduct(V_WH_ - V).dot(V);
+  const double kinetic = pose_.KineticEnergy();
+  const double gained =
+      kinetic + PotentialEnergy() - before - (coupled_ ? std::max(0.0, dragged) : 0);
+  lost_ = std::min(lost_ - gained, kMemory * kinetic);
+  if (lost_ >= 0 || kinetic == 0) return;
+  v_ *= std::sqrt(std::max(0.0, 1 + lost_ / kinetic));
+  lost_ = 0;
+  ForwardVelocities(tree_, v_.data(), &pose_.ws());
+}
+
 double CoupledDynamics::Energy() const noexcept {
-  const Vector6d e1 = HandError(pose_.X_WG(), X_WH_);
-  double energy = pose_.MechanicalEnergy();
-  const Vector6d pull = coupling_.stiffness.cwiseProduct(e1);
-  energy += SpringEnergy(e1.head<3>(), pull.head<3>(), coupling_.max_force);
-  energy += SpringEnergy(e1.tail<3>(), pull.tail<3>(), coupling_.max_moment);
+  return pose_.KineticEnergy() + PotentialEnergy();
+}
+
+double CoupledDynamics::PotentialEnergy() const noexcept {
+  double energy = pose_.WeightEnergy();
+  if (coupled_) {
+    const Vector6d e1 = HandError(pose_.X_WG(), X_WH_);
+    const Vector6d pull = coupling_.stiffness.cwiseProduct(e1);
+    energy += SpringEnergy(e1.head<3>(), pull.head<3>(), coupling_.max_force) +
+              SpringEnergy(e1.tail<3>(), pull.tail<3>(), coupling_.max_moment);
+  }
   for (const TreeNode& node : tree_.nodes) {
     if (!MovesAlone(node)) continue;
     const Passive& passive = tree_.mechanism.joints[node.joint].passive[node.freedom];

@@ -36,9 +36,10 @@ enum class CoupledStatus {
 ///   w = K (e1 - T J v+) + B (V_H - J v+),            q+ = q (+) T v+, loops closed,
 ///
 /// that is (M/T + J'(B + T K) J + ..) v+ = M v/T - h + J'(K e1 + B V_H) - C' mu: what the hand
-/// feels, -w, is the reaction of a mass that really moves, and implicit steps only lose energy. The
-/// multipliers come from the method of multipliers with one factorisation, as in HandDynamics;
-/// redundant loop equations need no care. No allocation after construction.
+/// feels, -w, is the reaction of a mass that really moves. Implicit steps only lose energy; what
+/// centrifugal forces, taken at the start of the step, add beyond what was lost before is taken out
+/// of the velocities. The multipliers come from the method of multipliers with one factorisation,
+/// as in HandDynamics; redundant loop equations need no care. No allocation after construction.
 class CoupledDynamics {
  public:
   /// Keeps a reference to the tree. Rotational rows of the coupling do not count for a point grasp.
@@ -49,6 +50,10 @@ class CoupledDynamics {
 
   /// At rest from now on.
   void Stop() noexcept;
+  /// Held at another frame of the same kind, or again after LetGo.
+  void TakeHold(const GraspFrame& grasp) noexcept;
+  /// Nobody holds it: the coupling exerts nothing until TakeHold.
+  void LetGo() noexcept { coupled_ = false; }
   /// A step with the hand at X_WH, moving with V_WH [v; w] at Ho, world axes.
   [[nodiscard]] CoupledStatus Step(const Posed& X_WH, const Vector6d& V_WH) noexcept;
 
@@ -56,6 +61,7 @@ class CoupledDynamics {
   const VectorXd& q() const noexcept { return q_; }
   const VectorXd& v() const noexcept { return v_; }
   const Posed& X_WG() const noexcept { return pose_.X_WG(); }
+  const HeldPose& pose() const noexcept { return pose_; }
   Vector6d V_WG() const noexcept { return pose_.J() * v_; }
   /// Hand on mechanism during the step, at Go, world axes: what the coupling pulls.
   const Vector6d& w() const noexcept { return w_; }
@@ -78,6 +84,8 @@ class CoupledDynamics {
   bool ChangeContacts() noexcept;
   void FindWrenches() noexcept;
   CoupledStatus Move() noexcept;
+  double PotentialEnergy() const noexcept;
+  void KeepEnergy(double before) noexcept;
   bool Close() noexcept;
 
   const KinematicTree& tree_;
@@ -94,7 +102,9 @@ class CoupledDynamics {
   Posed X_WH_;
   Vector6d e1_ = Vector6d::Zero(), V_WH_ = Vector6d::Zero(), w_ = Vector6d::Zero();
   double closure_ = 0;
+  double lost_ = 0;  // energy that steps may give back [J]
   bool slipping_ = false;
+  bool coupled_ = true;
 };
 
 }  // namespace vmech

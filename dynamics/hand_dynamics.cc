@@ -162,7 +162,7 @@ void HandDynamics::PassiveForces() noexcept {
 }
 
 double HandDynamics::Energy() const noexcept {
-  double energy = pose_.MechanicalEnergy();
+  double energy = pose_.KineticEnergy() + pose_.WeightEnergy();
   for (const TreeNode& node : tree_.nodes) {
     if (node.v < 0 || node.motion == NodeMotion::kSpherical) continue;
     const double length = spring_length_[node.v];

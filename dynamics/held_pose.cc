@@ -64,18 +64,25 @@ void HeldPose::LoadJoints(const Vector6d& w_hand, const VectorXd& mu,
   }
 }
 
-double HeldPose::MechanicalEnergy() const noexcept {
-  const Vector3d& gravity = tree_.mechanism.gravity_W;
+double HeldPose::KineticEnergy() const noexcept {
   double energy = 0;
   for (size_t i = 0; i < tree_.nodes.size(); ++i) {
     const TreeNode& node = tree_.nodes[i];
     if (node.link < 0) continue;
     const NodeState<double>& s = ws_.nodes[i];
-    const Vector3d c = s.X_WB.R * node.p_BoBcm;
-    const Vector3d v_cm = s.v + s.w.cross(c);
+    const Vector3d v_cm = s.v + s.w.cross(s.X_WB.R * node.p_BoBcm);
     const Vector3d w_B = s.X_WB.R.transpose() * s.w;
     energy += 0.5 * (node.mass * v_cm.squaredNorm() + w_B.dot(node.I_Bcm * w_B));
-    energy -= node.mass * gravity.dot(s.X_WB.p + c);
+  }
+  return energy;
+}
+
+double HeldPose::WeightEnergy() const noexcept {
+  double energy = 0;
+  for (size_t i = 0; i < tree_.nodes.size(); ++i) {
+    const TreeNode& node = tree_.nodes[i];
+    if (node.link < 0) continue;
+    energy -= node.mass * tree_.mechanism.gravity_W.dot(ws_.nodes[i].X_WB * node.p_BoBcm);
   }
   return energy;
 }

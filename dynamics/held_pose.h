@@ -15,6 +15,10 @@ class HeldPose {
   /// Keeps a reference to the tree.
   HeldPose(const KinematicTree& tree, const GraspFrame& grasp);
 
+  /// Another grasp frame, from the next Set on.
+  void SetGrasp(const GraspFrame& grasp) noexcept { grasp_ = grasp; }
+  const GraspFrame& grasp() const noexcept { return grasp_; }
+
   /// Takes q [nq]; returns the pose of the grasp frame.
   const Posed& Set(const VectorXd& q) noexcept;
   /// Nodes and loop errors alone, as needed between two steps of a closure.
@@ -32,9 +36,10 @@ class HeldPose {
   void LoadJoints(const Vector6d& w_hand, const VectorXd& mu,
                   std::vector<Wrenchd>* joints) noexcept;
 
-  /// Kinetic energy at the velocities in ws, and weight (zero with all centres of gravity at the
-  /// height of Wo) [J].
-  double MechanicalEnergy() const noexcept;
+  /// At the velocities in ws [J].
+  double KineticEnergy() const noexcept;
+  /// Zero with all centres of gravity at the height of Wo [J].
+  double WeightEnergy() const noexcept;
 
  private:
   const KinematicTree& tree_;

@@ -32,7 +32,8 @@ void ArmTorques::Reset() noexcept {
   posture_torque_.setZero();
 }
 
-void ArmTorques::Resolve(const MasterState& state, bool fresh, MasterCommand* command) noexcept {
+void ArmTorques::Resolve(const MasterState& state, bool fresh,
+                         MasterCommand* command) noexcept VMECH_NONBLOCKING {
   arm_.SetPosture(state.q.data());
   const VectorXd& q_0 = arm_.description().posture;
   for (int i = 0; fresh && i < arm_.joints(); ++i) {

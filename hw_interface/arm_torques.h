@@ -3,6 +3,7 @@
 #include "vmech/hw_interface/arm_model.h"
 #include "vmech/hw_interface/estimators.h"
 #include "vmech/hw_interface/master.h"
+#include "vmech/hw_interface/nonblocking.h"
 
 namespace vmech {
 
@@ -31,7 +32,8 @@ class ArmTorques {
 
   void Reset() noexcept;
   /// Writes `torque` of the command from its F_Ho_D at measured angles; `fresh` as in TickInput.
-  void Resolve(const MasterState& state, bool fresh, MasterCommand* command) noexcept;
+  void Resolve(const MasterState& state, bool fresh,
+               MasterCommand* command) noexcept VMECH_NONBLOCKING;
 
  private:
   PostureOptions options_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "vmech/kinematics/rotation_error.h"
 #include "vmech/solvers/stopping_rule.h"
@@ -12,6 +13,26 @@ namespace vmech {
 namespace {
 
 constexpr int kOwnChannels = 4;
+constexpr double kFade = 0.02;  // [s]: of the wrench on a hand that has let go
+
+double DistanceToLine(const Vector3d& p, const Vector3d& from, const Vector3d& to) {
+  const Vector3d way = to - from;
+  const double length2 = way.squaredNorm();
+  const double share = length2 > 0 ? std::clamp((p - from).dot(way) / length2, 0.0, 1.0) : 0;
+  return (p - from - share * way).norm();
+}
+
+/// From a point in the link's drawing frame to the lines between its anchors.
+double DistanceToLink(const Link& link, const Vector3d& p) {
+  double distance = std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i < link.anchors.size(); ++i) {
+    for (size_t j = 0; j <= i; ++j) {
+      const Vector3d &from = link.anchors[i].X_LA.p, &to = link.anchors[j].X_LA.p;
+      distance = std::min(distance, DistanceToLine(p, from, to));
+    }
+  }
+  return distance;
+}
 
 HandCoupling AtTheMechanism(const CoupledTickOptions& options) {
   options.Validate();
@@ -32,8 +53,10 @@ void CoupledTickOptions::Validate() const {
 
 CoupledTick::CoupledTick(const KinematicTree& tree, int grasp, const VectorXd& q, double period,
                          const CoupledTickOptions& options)
-    : options_(options),
-      dynamics_(tree, GraspFrameOf(tree, grasp), AtTheMechanism(options), period, q),
+    : tree_(tree),
+      options_(options),
+      grasp_(GraspFrameOf(tree, grasp)),
+      dynamics_(tree, grasp_, AtTheMechanism(options), period, q),
       period_(period),
       peaks_(tree.mechanism) {}
 
@@ -43,8 +66,31 @@ std::vector<std::string> CoupledTick::ChannelNames() const {
   return names;
 }
 
+bool CoupledTick::TakeHold(const Posed& X_WH) noexcept {
+  double nearest = std::numeric_limits<double>::infinity();
+  vmech::GraspFrame grasp = grasp_;
+  for (size_t l = 0; l < tree_.mechanism.links.size(); ++l) {
+    const int node = tree_.NodeOfLink(static_cast<int>(l));
+    if (node < 0) continue;
+    const Posed& X_WB = dynamics_.pose().ws().nodes[node].X_WB;
+    const Posed X_BH = X_WB.inverse() * X_WH;
+    const Posed X_BL = tree_.X_node_link(static_cast<int>(l));
+    const double distance = DistanceToLink(tree_.mechanism.links[l], X_BL.inverse() * X_BH.p);
+    if (distance >= nearest) continue;
+    nearest = distance;
+    grasp.node = node;
+    grasp.X_BG = X_BH;
+  }
+  dynamics_.TakeHold(grasp);
+  has_hand_ = false;
+  V_WH_.setZero();
+  return true;
+}
+
 void CoupledTick::Reset() noexcept {
+  dynamics_.TakeHold(grasp_);
   dynamics_.Stop();
+  last_F_.setZero();
   has_hand_ = false;
   V_WH_.setZero();
   peaks_.Reset();
@@ -52,7 +98,8 @@ void CoupledTick::Reset() noexcept {
 }
 
 TickOutput CoupledTick::Step(const TickInput& input, std::span<double> channels) noexcept {
-  if (input.fresh) EstimateTwist(input);
+  if (input.fresh || !has_hand_) EstimateTwist(input);
+  if (!input.held) dynamics_.LetGo();
   const CoupledStatus status = dynamics_.Step(X_WH_, V_WH_);
   TickOutput out;
   if (status == CoupledStatus::kFailed) {
@@ -60,7 +107,9 @@ TickOutput CoupledTick::Step(const TickInput& input, std::span<double> channels)
     return out;
   }
   out.status = status == CoupledStatus::kStopped ? TickStatus::kHeld : TickStatus::kOk;
-  out.F_Ho_W = -options_.scale * dynamics_.w();
+  last_F_ *= std::exp(-period_ / kFade);
+  if (input.held) last_F_ = -options_.scale * dynamics_.w();
+  out.F_Ho_W = last_F_;
   out.stored_energy = options_.scale * dynamics_.Energy();
   Account(status, channels);
   return out;

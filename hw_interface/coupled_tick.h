@@ -34,7 +34,8 @@ struct CoupledSummary {
 /// The second architecture: a mechanism that moves by its own dynamics, and between it and the hand
 /// a spring and a damper (CoupledDynamics). The hand feels true inertia at frequencies far below
 /// that of the mechanism on the spring, needs no acceleration, and can let freedoms go that its
-/// grasp does not reach. No allocation after construction.
+/// grasp does not reach. A hand that lets go feels the last wrench fade out; the mechanism then
+/// moves alone. No allocation after construction.
 class CoupledTick : public Tick {
  public:
   /// Keeps a reference to the tree. `q`: a closed pose, where the hand takes hold.
@@ -44,6 +45,8 @@ class CoupledTick : public Tick {
 
   std::vector<std::string> ChannelNames() const override;
   Posed GraspFrame() const noexcept override { return dynamics_.X_WG(); }
+  /// The link whose skeleton, the lines between its anchors, is nearest; held as it is there.
+  bool TakeHold(const Posed& X_WH) noexcept override;
   void Reset() noexcept override;
   TickOutput Step(const TickInput& input, std::span<double> channels) noexcept override;
 
@@ -57,10 +60,13 @@ class CoupledTick : public Tick {
   void EstimateTwist(const TickInput& input) noexcept;
   void Account(CoupledStatus status, std::span<double> channels) noexcept;
 
+  const KinematicTree& tree_;
   CoupledTickOptions options_;
+  vmech::GraspFrame grasp_;  // where the hand takes hold by name
   CoupledDynamics dynamics_;
   double period_;
   bool has_hand_ = false;
+  Vector6d last_F_ = Vector6d::Zero();
   Posed X_WH_;
   Vector6d V_WH_ = Vector6d::Zero();
   JointPeaks peaks_;

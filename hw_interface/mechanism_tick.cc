@@ -95,6 +95,7 @@ TickOutput MechanismTick::Step(const TickInput& input, std::span<double> channel
   // Paper eq. (12): the hand feels the opposite of what it does to the mechanism.
   out.F_Ho_W = -(dynamics_.w_d() + law.Wrench(e1, slip_rate_));
   out.stored_energy = dynamics_.Energy() + law.StoredEnergy(e1);
+  if (!input.held) out.F_Ho_W.setZero();
   Report(e1, channels);
   return out;
 }

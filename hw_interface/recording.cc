@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <fstream>
 #include <string_view>
@@ -12,6 +13,7 @@ namespace {
 constexpr std::string_view kFirstLine = "# vmech recording 1";
 constexpr std::string_view kDevice = "# device ";
 constexpr std::string_view kPeriod = "# period ";
+constexpr std::string_view kNote = "note ";
 
 /// Visits every column of a tick with its name: the table is stated once, for both directions.
 /// Numbers that are not doubles pass through one.
@@ -144,6 +146,51 @@ std::string AfterWord(const std::string& line, std::string_view word) {
   throw std::runtime_error(fmt::format("'{}' expected", word));
 }
 
+std::string PhysicsLine(const HandlePhysics& handle) {
+  return fmt::format("{} {} {} {} {} {}", handle.mass, handle.damping, handle.coulomb,
+                     handle.resolution, handle.peak, handle.max_speed);
+}
+
+HandlePhysics ReadPhysics(std::string text) {
+  std::replace(text.begin(), text.end(), ' ', ',');
+  HandlePhysics handle;
+  LineReader reader(text);
+  for (double* value : {&handle.mass, &handle.damping, &handle.coulomb, &handle.resolution,
+                        &handle.peak, &handle.max_speed}) {
+    reader("physics of the handle", *value);
+  }
+  return handle;
+}
+
+/// What stands behind "# " in one of the lines that not every recording has.
+void ReadRemark(const std::string& remark, Recording* recording) {
+  const std::string word = remark.substr(0, remark.find(' '));
+  const std::string rest = remark.substr(std::min(remark.size(), word.size() + 1));
+  if (word == "delay") {
+    LineReader{rest}("delay", recording->delay);
+  } else if (word == "linear") {
+    recording->linear = ReadPhysics(rest);
+  } else if (word == "angular") {
+    recording->angular = ReadPhysics(rest);
+  } else if (word == "note") {
+    const std::string key = rest.substr(0, rest.find(' '));
+    recording->notes.emplace_back(key, rest.substr(std::min(rest.size(), key.size() + 1)));
+  } else {
+    throw std::runtime_error(fmt::format("'# {}': delay, linear, angular or note expected", word));
+  }
+}
+
+std::string HeaderOf(const Recording& recording) {
+  std::string lines =
+      fmt::format("{}\n{}{}\n{}{}\n# delay {}\n# linear {}\n# angular {}\n", kFirstLine, kDevice,
+                  recording.device, kPeriod, recording.period, recording.delay,
+                  PhysicsLine(recording.linear), PhysicsLine(recording.angular));
+  for (const auto& [key, text] : recording.notes) {
+    lines += fmt::format("# {}{} {}\n", kNote, key, text);
+  }
+  return lines;
+}
+
 TickRecord ReadTick(const std::string& line, const std::vector<std::string>& channels) {
   TickRecord tick;
   LineReader reader(line);
@@ -154,12 +201,16 @@ TickRecord ReadTick(const std::string& line, const std::vector<std::string>& cha
 
 }  // namespace
 
+std::string Recording::Note(std::string_view wanted) const {
+  for (const auto& [key, text] : notes) {
+    if (key == wanted) return text;
+  }
+  return {};
+}
+
 void WriteRecording(const std::filesystem::path& file, const Recording& recording) {
   std::ofstream out(file);
-  out << kFirstLine << '\n'
-      << kDevice << recording.device << '\n'
-      << kPeriod << fmt::to_string(recording.period) << '\n'
-      << NameLine(recording.channels) << '\n';
+  out << HeaderOf(recording) << NameLine(recording.channels) << '\n';
   for (const TickRecord& tick : recording.ticks) {
     LineWriter line(false);
     VisitColumns(line, tick, static_cast<int>(recording.channels.size()), recording.channels);
@@ -188,7 +239,7 @@ Recording ReadRecording(const std::filesystem::path& file) {
     next();
     const std::string text = AfterWord(line, kPeriod);
     LineReader{text}("period", recording.period);
-    next();
+    while (next() && line.rfind("# ", 0) == 0) ReadRemark(line.substr(2), &recording);
     recording.channels = ChannelsOf(line);
     while (next()) recording.ticks.push_back(ReadTick(line, recording.channels));
   } catch (const std::runtime_error& error) {

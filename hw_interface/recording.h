@@ -2,6 +2,8 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "vmech/hw_interface/safety_filter.h"
@@ -25,17 +27,27 @@ struct TickRecord {
   std::array<double, kMaxChannels> channels{};  ///< of the tick, named in the recording
 };
 
+/// What a session was made of, in words without spaces as keys: mechanism, grasp, ...
+using RecordingNotes = std::vector<std::pair<std::string, std::string>>;
+
 /// A recorded session.
 struct Recording {
   std::string device;
   double period = 1e-3;               ///< [s]
   std::vector<std::string> channels;  ///< names of the first channels, at most kMaxChannels
   std::vector<TickRecord> ticks;
+  double delay = 0;               ///< of the device [s]
+  HandlePhysics linear, angular;  ///< of the device
+  RecordingNotes notes;
+
+  /// Of the first note with this key; empty if there is none.
+  std::string Note(std::string_view key) const;
 };
 
-/// A table in CSV: comment lines "# vmech recording 1", "# device ...", "# period ...", a line of
-/// column names, a line per tick; SI units, numbers in the fewest digits that give them back
-/// exactly. The handle's orientation is a unit quaternion w, x, y, z.
+/// A table in CSV: comment lines "# vmech recording 1", "# device ...", "# period ..." and, where
+/// they are known, "# delay ...", "# linear ..." and "# angular ..." (the fields of HandlePhysics)
+/// and "# note KEY ..."; a line of column names, a line per tick; SI units, numbers in the fewest
+/// digits that give them back exactly. The handle's orientation is a unit quaternion w, x, y, z.
 /// @throws std::runtime_error if the file cannot be written.
 void WriteRecording(const std::filesystem::path& file, const Recording& recording);
 

@@ -4,13 +4,17 @@
 
 namespace vmech {
 
-/// A recorded hand as a master: sample after sample of a recording, one per read, whatever is
-/// commanded. What was valid in the recording is valid again, but for the wrench that was at work:
-/// nothing is.
+enum class ReplayKind {
+  kHand,     ///< the hand only: no wrench is at work, whatever was
+  kSession,  ///< the device with its physics, the wrenches at work and the samples that were
+             ///< missing
+};
+
+/// A recording as a master: sample after sample, one per read, whatever is commanded.
 class ReplayMaster : public Master {
  public:
   /// @throws std::invalid_argument if the recording is empty.
-  explicit ReplayMaster(Recording recording);
+  explicit ReplayMaster(Recording recording, ReplayKind kind = ReplayKind::kHand);
   ~ReplayMaster() override { Shutdown(); }
 
   bool finished() const noexcept { return next_ == recording_.ticks.size(); }
@@ -21,6 +25,7 @@ class ReplayMaster : public Master {
   IoStatus OnWrite(const MasterCommand&) noexcept override { return IoStatus::kOk; }
 
   Recording recording_;
+  ReplayKind kind_;
   std::size_t next_ = 0;
 };
 

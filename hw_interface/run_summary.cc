@@ -40,7 +40,8 @@ std::string RunSummary::FullReport() const {
   std::string text = BriefReport() + "\n";
   text += "  " + realtime.BriefReport() + "\n";
   text += Durations("late", late) + Durations("interval", interval) + Durations("compute", compute);
-  text += fmt::format("  samples missed {}, mechanism held {} ticks\n", missed, held);
+  text += fmt::format("  samples missed {}, mechanism held {} ticks, {} grasps\n", missed, held,
+                      grasps);
   text += fmt::format("  peak force {:.4g} N, moment {:.4g} N m; least energy {:.3g} J\n",
                       peak_force, peak_moment, least_energy);
   text += fmt::format(

@@ -107,19 +107,19 @@ IoStatus Runner::ReadMaster(std::int64_t slot_ns, MasterState* state) noexcept {
 }
 
 /// The wrench of the mechanism on the hand, in the device's axes.
-TickOutput Runner::StepTick(IoStatus io, TickRecord* record) noexcept {
+TickOutput Runner::StepTick(IoStatus io, TickRecord* record) noexcept VMECH_NONBLOCKING {
   TickOutput out;
   record->channels.fill(0);
   record->wanted_F_Ho_D.setZero();
-  if (!grasped_) {
+  if (!registered_) {
     if (io != IoStatus::kOk) return out;
-    registration_ = GraspedAt(options_.R_WD, state_.X_DH, tick_->GraspFrame());
-    tick_->Reset();
-    if (torques_) torques_->Reset();
+    Register();
     last_sequence_ = state_.sequence;
-    grasped_ = true;
+    registered_ = true;
   }
+  if (fresh_) GraspOrLetGo();
   TickInput input;
+  input.held = holds_;
   input.X_WH = registration_.HandInWorld(state_.X_DH);
   input.fresh = fresh_;
   input.elapsed = static_cast<double>(state_.sequence - last_sequence_) * period_;
@@ -130,6 +130,35 @@ TickOutput Runner::StepTick(IoStatus io, TickRecord* record) noexcept {
   record->wanted_F_Ho_D << R_DW * out.F_Ho_W.head<3>(), R_DW * out.F_Ho_W.tail<3>();
   if (out.status == TickStatus::kFailed) record->wanted_F_Ho_D.setZero();
   return out;
+}
+
+/// Puts the hand where the grasp frame is.
+void Runner::Register() noexcept {
+  registration_ = GraspedAt(options_.R_WD, state_.X_DH, tick_->GraspFrame());
+  tick_->Reset();
+  if (torques_) torques_->Reset();
+  holds_ = !options_.gripper;
+  summary_.grasps += holds_;
+}
+
+void Runner::GraspOrLetGo() noexcept {
+  const bool closes = GripperCloses();
+  if (closes == holds_) return;
+  holds_ = closes;
+  if (!closes) return;
+  safety_.Restart();
+  ++summary_.grasps;
+  if (!tick_->TakeHold(registration_.HandInWorld(state_.X_DH))) {
+    registration_ = GraspedAt(options_.R_WD, state_.X_DH, tick_->GraspFrame());
+    tick_->Reset();
+  }
+}
+
+/// With a dead zone between closed and open.
+bool Runner::GripperCloses() const noexcept {
+  if (!options_.gripper || !(state_.valid & kSensesGripper)) return true;
+  constexpr double kClosed = 0.1, kOpen = 0.2;  // [rad]
+  return state_.gripper_opening < (holds_ ? kOpen : kClosed);
 }
 
 void Runner::Send(std::int64_t slot_ns, const SafetyOutput& safe) noexcept {
@@ -183,7 +212,9 @@ Recording Runner::Kept() const {
 }
 
 Recording Runner::LastTicks(std::uint64_t count) const {
-  Recording recording{summary_.device, period_, channels_, {}};
+  const DeviceInfo& info = master_->info();
+  Recording recording{summary_.device, period_,     channels_,    {},
+                      info.delay,      info.linear, info.angular, options_.notes};
   count = std::min({count, summary_.ticks, static_cast<std::uint64_t>(kept_.size())});
   recording.ticks.reserve(count);
   for (std::uint64_t i = summary_.ticks - count; i < summary_.ticks; ++i) {

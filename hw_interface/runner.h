@@ -8,6 +8,7 @@
 #include "vmech/hw_interface/arm_torques.h"
 #include "vmech/hw_interface/histogram.h"
 #include "vmech/hw_interface/loop_clock.h"
+#include "vmech/hw_interface/nonblocking.h"
 #include "vmech/hw_interface/realtime.h"
 #include "vmech/hw_interface/tick.h"
 
@@ -19,7 +20,9 @@ struct RunnerOptions {
   int keep = 2000;      ///< last ticks that are kept in any case, in [1, 1e6]
   /// Where the last ticks are written after a fault; empty: nowhere.
   std::filesystem::path post_mortem;
+  RecordingNotes notes;  ///< for the recordings
   int command_life = 5;  ///< periods after which the device drops a command by itself, in [1, 1000]
+  bool gripper = false;  ///< hold only while the gripper is closed, where the device senses it
   bool joint_torques = true;             ///< where the device takes them; else wrenches
   Matrix3d R_WD = Matrix3d::Identity();  ///< the device's axes in the mechanism's world
   SafetyOptions safety;
@@ -47,6 +50,7 @@ struct RunSummary {
   std::uint64_t skipped = 0;          ///< slots that passed while the loop was late
   std::uint64_t missed = 0;           ///< ticks without a new sample
   std::uint64_t held = 0;             ///< ticks in which the mechanism could not follow
+  std::uint64_t grasps = 0;           ///< how often the hand took hold
   Histogram late, interval, compute;  ///< [ns]; `interval` from wake-up to wake-up
   SafetyCounters safety;
   double peak_force = 0, peak_moment = 0;  ///< sent [N], [N m]
@@ -94,7 +98,10 @@ class Runner {
   bool IsOver() const noexcept;
   void RunSlot(std::int64_t slot_ns, TickRecord* record) noexcept;
   IoStatus ReadMaster(std::int64_t slot_ns, MasterState* state) noexcept;
-  TickOutput StepTick(IoStatus io, TickRecord* record) noexcept;
+  TickOutput StepTick(IoStatus io, TickRecord* record) noexcept VMECH_NONBLOCKING;
+  void Register() noexcept;
+  void GraspOrLetGo() noexcept;
+  bool GripperCloses() const noexcept;
   void Send(std::int64_t slot_ns, const SafetyOutput& safe) noexcept;
   void Account(const TickRecord& record, std::int64_t now_ns) noexcept;
   void Finish();
@@ -115,7 +122,7 @@ class Runner {
   RunSummary summary_;
   LiveStatus live_;
   std::uint64_t slots_ = 0;  // to run; 0: no end
-  bool grasped_ = false, fresh_ = false, failed_ = false;
+  bool registered_ = false, holds_ = false, fresh_ = false, failed_ = false;
   std::uint64_t last_sequence_ = 0;
   std::int64_t last_wake_ns_ = -1;
   std::atomic<bool> stop_ = false, emergency_stop_ = false;

@@ -77,7 +77,7 @@ void SafetyFilter::Rearm() noexcept {
   Restart();
 }
 
-SafetyOutput SafetyFilter::Apply(const SafetyInput& input) noexcept {
+SafetyOutput SafetyFilter::Apply(const SafetyInput& input) noexcept VMECH_NONBLOCKING {
   SafetyOutput out;
   out.sequence = ++counters_.ticks;
   sent_[out.sequence % kMemory].setZero();

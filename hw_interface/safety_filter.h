@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vmech/hw_interface/master.h"
+#include "vmech/hw_interface/nonblocking.h"
 #include "vmech/hw_interface/passivity.h"
 
 namespace vmech {
@@ -31,7 +32,7 @@ enum SafetyStage : std::uint32_t {
 inline constexpr int kSafetyStages = 4;
 
 struct SafetyOptions {
-  double soft_start = 0.5;   ///< ramp from nothing to the whole wrench [s], in [0, 10]
+  double soft_start = 0.5;  ///< ramp from nothing to the whole wrench [s], in [0, 10]
   /// Count what the soft start withholds as carried by somebody else: for a mechanism that moves by
   /// itself and gets the whole from the start. False: the hand pays for what it feels only.
   bool carried_start = false;
@@ -91,7 +92,7 @@ class SafetyFilter {
   ///         largest force and moment.
   SafetyFilter(const SafetyOptions& options, const DeviceInfo& info);
 
-  [[nodiscard]] SafetyOutput Apply(const SafetyInput& input) noexcept;
+  [[nodiscard]] SafetyOutput Apply(const SafetyInput& input) noexcept VMECH_NONBLOCKING;
 
   /// Starts the ramp again: at a grasp, a release or a change of gains. Energy starts anew.
   void Restart() noexcept;

@@ -32,6 +32,7 @@ struct TickInput {
   Posed X_WH;          ///< the hand
   bool fresh = false;  ///< false: no new sample, the pose is that of the last tick
   double elapsed = 0;  ///< since the last fresh sample; a whole number of periods [s]
+  bool held = true;    ///< false: the hand has let go, nothing is felt
   const MasterState* state = nullptr;
 };
 
@@ -56,6 +57,12 @@ class Tick {
   virtual std::vector<std::string> ChannelNames() const = 0;
   /// Where the hand takes hold: the grasp frame now.
   virtual Posed GraspFrame() const noexcept = 0;
+  /// The hand closes at X_WH: takes hold of what is nearest there, without a jump. False: that is
+  /// not possible, the hand has to be brought to the grasp frame.
+  virtual bool TakeHold(const Posed& X_WH) noexcept {
+    (void)X_WH;
+    return false;
+  }
   /// Forgets velocities: the hand takes hold anew.
   virtual void Reset() noexcept = 0;
   /// `channels` has as many entries as there are names.

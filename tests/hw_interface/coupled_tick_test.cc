@@ -128,6 +128,68 @@ TEST(CoupledTick, TakesHoldWithoutAJumpAndLetsGoOfItsSpeed) {
   EXPECT_LT(held.Step(held.tick->GraspFrame()).F_Ho_W.norm(), 1);
 }
 
+TEST(CoupledTick, TakesHoldOfTheNearestLinkWhereTheHandIs) {
+  Mechanism four_bar = Example("four-bar");
+  four_bar.gravity_W.setZero();
+  Session held(four_bar, "handle", {});
+  for (const char* name : {"crank", "rocker", "coupler"}) {
+    // A centimetre beside the middle of the link.
+    const int link = FindLink(four_bar, name);
+    const int node = held.tree.NodeOfLink(link);
+    const std::vector<Anchor>& anchors = four_bar.links[link].anchors;
+    const Posed X_WL =
+        held.tick->dynamics().pose().ws().nodes[node].X_WB * held.tree.X_node_link(link);
+    Posed X_WH = X_WL;
+    X_WH.p = X_WL * (0.5 * (anchors[0].X_LA.p + anchors[1].X_LA.p)) + Vector3d(0, 0, 0.01);
+    ASSERT_TRUE(held.tick->TakeHold(X_WH));
+    EXPECT_EQ(held.tick->dynamics().pose().grasp().node, node) << name;
+    EXPECT_LT((held.tick->GraspFrame().p - X_WH.p).norm(), 1e-12);
+    EXPECT_LT(held.Step(X_WH).F_Ho_W.norm(), 1e-9);
+  }
+}
+
+TEST(CoupledTick, HandThatLetsGoFeelsTheWrenchFadeAndTheMechanismMovesOn) {
+  Session held(Example("crank"), "tip", {});
+  const Posed X_WH = held.tick->GraspFrame();
+  double last = held.Rest(X_WH).norm();
+  EXPECT_GT(last, 1);
+  std::vector<double> channels(held.tick->ChannelNames().size());
+  TickInput input;
+  input.X_WH = X_WH;
+  input.held = false;
+  for (int k = 0; k < 200; ++k) {
+    const double felt = held.tick->Step(input, channels).F_Ho_W.norm();
+    EXPECT_LT(felt, last);
+    EXPECT_GT(felt, 0.9 * last);
+    last = felt;
+  }
+  EXPECT_LT(last, 1e-3);
+  EXPECT_GT((held.tick->GraspFrame().p - X_WH.p).norm(), 0.05);  // it has fallen
+}
+
+TEST(Runner, GripperTakesHoldAndLetsGoWithoutAJump) {
+  SimulatedMasterOptions arm;
+  arm.squeeze = [](double t) { return std::fmod(t, 2.0) < 1 ? -0.4 : 0.4; };
+  Session session(Example("crank"), "handle", arm);
+  RunnerOptions options;
+  options.seconds = 8;
+  options.record = true;
+  options.gripper = true;
+  options.realtime.reset();
+  options.safety = session.choice.Safety();
+  FreeRunningClock clock;
+  Runner runner(options, &session.master, session.tick.get(), &clock);
+  const RunSummary summary = runner.Run();
+  EXPECT_EQ(summary.status, RunStatus::kFinished) << summary.FullReport();
+  EXPECT_EQ(summary.grasps, 4u);
+  Vector3d before = Vector3d::Zero();
+  for (const TickRecord& record : runner.Kept().ticks) {
+    const Vector3d force = record.sent_F_Ho_D.head<3>();
+    EXPECT_LT((force - before).norm(), 2);
+    before = force;
+  }
+}
+
 class EveryCoupledSession : public testing::TestWithParam<std::string> {};
 
 TEST_P(EveryCoupledSession, HandAtRestFeelsTheGravityShare) {

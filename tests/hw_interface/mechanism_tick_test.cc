@@ -5,10 +5,10 @@
 #include <numbers>
 
 #include "support/examples.h"
+#include "vmech/hw_interface/coupling_choice.h"
 #include "vmech/hw_interface/runner.h"
 #include "vmech/hw_interface/simulated_master.h"
 #include "vmech/hw_interface/stability.h"
-#include "vmech/hw_interface/coupling_choice.h"
 #include "vmech/kinematics/assembly.h"
 #include "vmech/kinematics/rotation_error.h"
 

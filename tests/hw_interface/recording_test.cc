@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <limits>
 
 #include "support/temp_folder.h"
 #include "vmech/hw_interface/replay_master.h"
@@ -28,6 +29,9 @@ class RecordingFile : public testing::Test {
       tick.channels = {1e-300, 2.5};
       recording.ticks.push_back(tick);
     }
+    recording.delay = 2e-3;
+    recording.linear = {0.8, 0.3, 0, 1e-4, 130, std::numeric_limits<double>::infinity()};
+    recording.notes = {{"file", "a mechanism.yaml"}, {"grasp", ""}};
     return recording;
   }
 
@@ -51,6 +55,11 @@ TEST_F(RecordingFile, ComesBackAsItWas) {
   const Recording after = ReadRecording(file_);
   EXPECT_EQ(after.device, before.device);
   EXPECT_EQ(after.channels, before.channels);
+  EXPECT_EQ(after.delay, before.delay);
+  EXPECT_EQ(after.linear.mass, before.linear.mass);
+  EXPECT_EQ(after.linear.max_speed, before.linear.max_speed);
+  EXPECT_EQ(after.Note("file"), "a mechanism.yaml");
+  EXPECT_EQ(after.Note("grasp"), "");
   ASSERT_EQ(after.ticks.size(), 3u);
   for (int k = 0; k < 3; ++k) {
     const TickRecord &a = after.ticks[k], &b = before.ticks[k];
@@ -69,10 +78,12 @@ TEST_F(RecordingFile, ErrorsNameTheLineAndTheColumn) {
   std::ifstream in(file_);
   std::string text{std::istreambuf_iterator<char>(in), {}};
   text.replace(text.rfind("101,"), 3, "1o1");
-  EXPECT_EQ(ErrorOf(text), file_.string() + ":6: column 'sequence': '1o1' is not a number");
+  EXPECT_EQ(ErrorOf(text), file_.string() + ":11: column 'sequence': '1o1' is not a number");
   EXPECT_EQ(ErrorOf("hello\n"), file_.string() + ":1: '# vmech recording 1' expected");
   EXPECT_EQ(ErrorOf("# vmech recording 1\n# device x\n# period 0.001\na,b\n"),
             file_.string() + ":4: these are not the columns of a recording");
+  EXPECT_EQ(ErrorOf("# vmech recording 1\n# device x\n# period 0.001\n# colour blue\n"),
+            file_.string() + ":4: '# colour': delay, linear, angular or note expected");
 }
 
 TEST_F(RecordingFile, ReplayGivesSampleAfterSampleAndThenNoMore) {
@@ -88,6 +99,14 @@ TEST_F(RecordingFile, ReplayGivesSampleAfterSampleAndThenNoMore) {
   EXPECT_TRUE(master.finished());
   EXPECT_EQ(master.Read(3, &state), IoStatus::kNoNewData);
   EXPECT_EQ(state.X_DH.p.y(), -2);
+}
+
+TEST_F(RecordingFile, SessionComesBackWithItsDeviceAndTheWrenchAtWork) {
+  ReplayMaster master(Sample(), ReplayKind::kSession);
+  master.Configure();
+  EXPECT_EQ(master.info().linear.mass, 0.8);
+  EXPECT_EQ(master.info().delay, 2e-3);
+  EXPECT_TRUE(master.info().senses & kSensesAppliedWrench);
 }
 
 TEST(ReplayMaster, RefusesAnEmptyRecording) {

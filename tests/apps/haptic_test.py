@@ -1,0 +1,98 @@
+"""haptic_test.py VMECH EXAMPLES: vmech haptic and vmech replay as their users meet them."""
+
+import csv
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+VMECH = ""
+EXAMPLES = pathlib.Path()
+
+MECHANISMS = ("crank", "two-link-arm", "slider-crank", "four-bar", "rssr", "bennett",
+              "stewart-gough")
+TIMES = ("late", "interval", "compute")
+
+
+class Haptic(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="vmech-"))
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def run_vmech(self, *arguments, code=0):
+        result = subprocess.run([VMECH, *map(str, arguments)], cwd=self.folder, text=True,
+                                capture_output=True, stdin=subprocess.DEVNULL, timeout=120)
+        self.assertEqual(result.returncode, code, result.stdout + result.stderr)
+        return result
+
+    def hold(self, name, *options, code=0):
+        return self.run_vmech("haptic", EXAMPLES / f"{name}.yaml", "--grasp", "handle", "--free",
+                              *options, code=code)
+
+    @staticmethod
+    def outcome(report):
+        """What does not depend on the machine and its clock."""
+        return [line for line in report.splitlines() if not line.strip().startswith(TIMES)]
+
+    def test_every_example_is_held_to_the_end(self):
+        for name in MECHANISMS:
+            with self.subTest(name=name):
+                report = self.hold(name, "--seconds", 2).stdout
+                self.assertIn("finished after 2000 ticks", report)
+                self.assertIn("virtual coupling", report)
+                self.assertEqual("what this device can render" in report, name == "stewart-gough")
+
+    def test_paper_coupling_names_its_share_of_the_inertia(self):
+        report = self.hold("slider-crank", "--seconds", 1, "--coupling", "paper").stdout
+        self.assertIn("% of the inertia", report)
+        self.assertIn("largest force at guide", report)
+
+    def test_gripper_takes_hold_twice_in_six_seconds(self):
+        report = self.hold("crank", "--seconds", 6, "--gripper").stdout
+        self.assertIn("2 grasps", report)
+
+    def test_replay_gives_the_same_report(self):
+        for options in ((), ("--coupling", "paper"), ("--gripper", "--scale", 0.5)):
+            with self.subTest(options=options):
+                first = self.hold("four-bar", "--seconds", 2, "--record", "hand.csv", *options)
+                again = self.run_vmech("replay", "hand.csv")
+                self.assertEqual(self.outcome(again.stdout), self.outcome(first.stdout))
+
+    def test_recorded_hand_moves_a_study(self):
+        self.hold("slider-crank", "--seconds", 1, "--record", "hand.csv", "--quiet")
+        self.run_vmech("replay", "hand.csv", "--quiet", "--motion", "motion.csv")
+        with open(self.folder / "motion.csv", newline="", encoding="utf-8") as file:
+            rows = list(csv.reader(file))
+        self.assertEqual(rows[0], ["t", "x", "y", "z", "qw", "qx", "qy", "qz"])
+        self.assertEqual(len(rows), 1001)
+        shutil.copy(EXAMPLES / "slider-crank.yaml", self.folder)
+        study = self.folder / "study.yaml"
+        study.write_text('vmech_study: "1.0"\nmechanism: slider-crank.yaml\n'
+                         'units: {length: m, angle: rad}\n'
+                         'motion: {grasp: handle, table: motion.csv}\n', encoding="utf-8")
+        self.run_vmech("haptic", "study.yaml", "--free", "--seconds", 0.5)
+
+    def test_replay_refuses_what_is_no_recording_of_a_session(self):
+        self.assertIn("cannot be opened", self.run_vmech("replay", "absent.csv", code=2).stderr)
+        (self.folder / "table.csv").write_text("t,x\n0,1\n", encoding="utf-8")
+        self.assertIn("table.csv:1", self.run_vmech("replay", "table.csv", code=2).stderr)
+        self.hold("crank", "--seconds", 0.1, "--record", "hand.csv", "--quiet")
+        text = (self.folder / "hand.csv").read_text(encoding="utf-8")
+        bare = "".join(line for line in text.splitlines(keepends=True) if "note" not in line)
+        (self.folder / "bare.csv").write_text(bare, encoding="utf-8")
+        self.assertIn("what was held", self.run_vmech("replay", "bare.csv", code=2).stderr)
+        damaged = text.replace("# note scale 0", "# note scale much")
+        (self.folder / "damaged.csv").write_text(damaged, encoding="utf-8")
+        self.assertIn("note scale much", self.run_vmech("replay", "damaged.csv", code=2).stderr)
+
+    def test_wrong_words_are_code_1_or_2(self):
+        self.assertIn("coupling", self.hold("crank", "--coupling", "glue", code=1).stderr)
+        self.assertIn("grip", self.hold("crank", "--grip", "iron", code=2).stderr)
+        self.assertIn("master 'mouse'", self.hold("crank", "--master", "mouse", code=2).stderr)
+
+
+if __name__ == "__main__":
+    VMECH, EXAMPLES = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
+    unittest.main(argv=sys.argv[:1])
