@@ -148,7 +148,8 @@ void CoupledDynamics::BuildSystem() noexcept {
   H0_ = M_ / T_;
   H0_.diagonal().array() += kDamping * H0_.diagonal().maxCoeff();
   rhs_ = -bias_;
-  rhs_.noalias() += M_ * (v_ / T_);
+  x_ = v_ / T_;
+  rhs_.noalias() += M_ * x_;
   AddPassive();
 }
 

@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "support/count_allocations.h"
+#include "support/examples.h"
+#include "vmech/hw_interface/coupled_tick.h"
 #include "vmech/hw_interface/runner.h"
 #include "vmech/hw_interface/simulated_master.h"
 
@@ -46,6 +50,33 @@ TEST(Runner, AllocatesNothingIn10000Ticks) {
   EXPECT_EQ(summary.status, RunStatus::kFinished) << summary.FullReport();
   EXPECT_EQ(tick.ticks, 10'000);
   EXPECT_EQ(tick.at_last - tick.at_first, 0);
+}
+
+TEST(CoupledTick, AllocatesNothingWhileItsHandLeadsItSlipsAndLetsGo) {
+  for (const char* name :
+       {"crank", "two-link-arm", "slider-crank", "four-bar", "rssr", "bennett", "stewart-gough"}) {
+    const KinematicTree tree = BuildKinematicTree(Example(name));
+    VectorXd q = StartCoordinates(tree);
+    ASSERT_TRUE(Assemble(tree, {}, &q).closed);
+    CoupledTickOptions options;
+    options.coupling.stiffness.setConstant(1e4);
+    options.coupling.damping.setConstant(50);
+    options.coupling.max_force = 50;
+    CoupledTick tick(tree, FindGrasp(tree.mechanism, "handle"), q, 1e-3, options);
+    std::vector<double> channels(tick.ChannelNames().size());
+    TickInput input;
+    input.X_WH = tick.GraspFrame();
+    input.fresh = true;
+    input.elapsed = 1e-3;
+    const long before = allocations;
+    for (int k = 0; k < 2000; ++k) {
+      input.X_WH.p.x() += 1e-4 * std::sin(0.01 * k);
+      input.held = k % 500 < 400;
+      if (k % 500 == 0) tick.TakeHold(input.X_WH);
+      ASSERT_NE(tick.Step(input, channels).status, TickStatus::kFailed);
+    }
+    EXPECT_EQ(allocations - before, 0) << name;
+  }
 }
 
 }  // namespace
