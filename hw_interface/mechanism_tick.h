@@ -16,7 +16,7 @@ struct MechanismTickOptions {
   /// CoupledTick.
   double inertia = 1;
   PoseEstimatorOptions estimator;
-  TrackOptions track;  ///< its stiffness is set from the law
+  TrackOptions track{.steps = 2};  ///< its stiffness is set from the law; the next tick goes on
 
   /// @throws std::invalid_argument naming field, value and range.
   void Validate() const;
