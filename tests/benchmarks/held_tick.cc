@@ -1,5 +1,6 @@
 #include "held_tick.h"
 
+#include "vmech/hw_interface/coupling_choice.h"
 #include "vmech/hw_interface/simulated_master.h"
 #include "vmech/hw_interface/stability.h"
 #include "vmech/kinematics/assembly.h"
@@ -30,28 +31,32 @@ VectorXd ClosedStart(const KinematicTree& tree) {
   return q;
 }
 
-MechanismTickOptions OptionsFor(const DeviceInfo& device) {
-  RenderingGains wanted;
-  wanted.stiffness.setConstant(1e9);
-  MechanismTickOptions options;
-  options.law.stiffness = LimitedGains(device, wanted).stiffness;
-  return options;
+std::unique_ptr<Tick> MakeTick(const KinematicTree& tree, int grasp, const DeviceInfo& device,
+                               Architecture architecture) {
+  const VectorXd q = ClosedStart(tree);
+  if (architecture == Architecture::kPaper) {
+    RenderingGains wanted;
+    wanted.stiffness.setConstant(1e9);
+    MechanismTickOptions options;
+    options.law.stiffness = LimitedGains(device, wanted).stiffness;
+    return std::make_unique<MechanismTick>(tree, grasp, q, device, options);
+  }
+  CoupledTickOptions options;
+  const CouplingChoice choice =
+      ChooseCoupling(tree, GraspFrameOf(tree, grasp), q, device, options.smoothing);
+  options.coupling = choice.coupling;
+  options.scale = choice.scale;
+  return std::make_unique<CoupledTick>(tree, grasp, q, device.period, options);
 }
 
 }  // namespace
 
-HeldTick::HeldTick(const std::string& example) : samples_(Wandering(&device_)) {
+HeldTick::HeldTick(const std::string& example, Architecture architecture)
+    : samples_(Wandering(&device_)) {
   const Mechanism mechanism = ReadMechanism(std::string(VMECH_EXAMPLES) + "/" + example + ".yaml");
   const int grasp = FindGrasp(mechanism, "handle");
   tree_ = std::make_unique<KinematicTree>(BuildKinematicTree(mechanism));
-  const VectorXd q = ClosedStart(*tree_);
-  const MechanismTickOptions options = OptionsFor(device_);
-  TrackOptions track = options.track;
-  track.kinematics.stiffness = options.law.stiffness;
-  tick_ = std::make_unique<MechanismTick>(*tree_, grasp, q, device_, options);
-  tracker_ = std::make_unique<HandTracker>(*tree_, GraspFrameOf(*tree_, grasp), q, track);
-  dynamics_ =
-      std::make_unique<HandDynamics>(*tree_, GraspFrameOf(*tree_, grasp), options.law.stiffness, q);
+  tick_ = MakeTick(*tree_, grasp, device_, architecture);
   safety_ = std::make_unique<SafetyFilter>(SafetyOptions{}, device_);
   torques_ = std::make_unique<ArmTorques>(PostureOptions{}, device_.arm, device_.period,
                                           device_.angular.resolution);
@@ -77,15 +82,6 @@ void HeldTick::Full() {
 
 void HeldTick::Step() {
   StepOn(NextSample());
-}
-
-void HeldTick::Track() {
-  (void)tracker_->Advance(registration_.HandInWorld(NextSample().X_DH));
-}
-
-void HeldTick::Evaluate() {
-  dynamics_->SetPose(tick_->q());
-  (void)dynamics_->Evaluate(NextSample().V_DH, Vector6d::Ones());
 }
 
 void HeldTick::Filter() {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "vmech/hw_interface/arm_torques.h"
+#include "vmech/hw_interface/coupled_tick.h"
 #include "vmech/hw_interface/mechanism_tick.h"
 #include "vmech/hw_interface/safety_filter.h"
 
@@ -14,16 +15,19 @@ namespace vmech {
 /// simulated 7-joint arm with 16-bit encoders: the tick on the samples of that arm, whose own
 /// simulation costs nothing here. The hand goes its way whatever the mechanism allows, so that it
 /// pulls on the constraints all the time.
+enum class Architecture {
+  kCoupled,  ///< CoupledTick
+  kPaper,    ///< MechanismTick
+};
+
 class HeldTick {
  public:
-  explicit HeldTick(const std::string& example);
+  HeldTick(const std::string& example, Architecture architecture);
 
   /// All that a runner does between a sample and the torques: mechanism, safety filter, arm.
   void Full();
-  // Its stages, each on the next sample. Track and Evaluate are parts of Step.
+  // Its stages, each on the next sample.
   void Step();
-  void Track();
-  void Evaluate();
   void Filter();
   void Resolve();
 
@@ -40,9 +44,7 @@ class HeldTick {
   MasterState state_;
   std::uint64_t sequence_ = 0;
   std::unique_ptr<KinematicTree> tree_;
-  std::unique_ptr<MechanismTick> tick_;
-  std::unique_ptr<HandTracker> tracker_;
-  std::unique_ptr<HandDynamics> dynamics_;
+  std::unique_ptr<Tick> tick_;
   std::unique_ptr<SafetyFilter> safety_;
   std::unique_ptr<ArmTorques> torques_;
   Registration registration_;

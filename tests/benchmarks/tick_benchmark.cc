@@ -7,25 +7,24 @@
 namespace vmech {
 namespace {
 
-void RegisterStages(const std::string& example) {
-  const std::pair<const char*, void (HeldTick::*)()> stages[] = {
-      {"full", &HeldTick::Full},     {"mechanism", &HeldTick::Step},
-      {"track", &HeldTick::Track},   {"dynamics", &HeldTick::Evaluate},
-      {"safety", &HeldTick::Filter}, {"arm_torques", &HeldTick::Resolve}};
-  for (const auto& [name, stage] : stages) {
-    benchmark::RegisterBenchmark((example + "/" + name).c_str(), [example, stage = stage](
-                                                                     benchmark::State& state) {
-      HeldTick tick(example);
-      for (auto _ : state) (tick.*stage)();
-    })->Apply(ReportPercentiles);
-  }
+void Register(const std::string& name, void (HeldTick::*stage)(), const std::string& example,
+              Architecture architecture) {
+  benchmark::RegisterBenchmark((example + "/" + name).c_str(), [=](benchmark::State& state) {
+    HeldTick tick(example, architecture);
+    for (auto _ : state) (tick.*stage)();
+  })->Apply(ReportPercentiles);
 }
 
 const bool registered = [] {
   for (const char* example :
        {"crank", "two-link-arm", "slider-crank", "four-bar", "rssr", "bennett", "stewart-gough"}) {
-    RegisterStages(example);
+    Register("coupled", &HeldTick::Full, example, Architecture::kCoupled);
+    Register("coupled_mechanism", &HeldTick::Step, example, Architecture::kCoupled);
+    Register("paper", &HeldTick::Full, example, Architecture::kPaper);
+    Register("paper_mechanism", &HeldTick::Step, example, Architecture::kPaper);
   }
+  Register("safety", &HeldTick::Filter, "crank", Architecture::kCoupled);
+  Register("arm_torques", &HeldTick::Resolve, "crank", Architecture::kCoupled);
   return true;
 }();
 

@@ -6,9 +6,10 @@
 namespace vmech {
 namespace {
 
-std::function<std::function<void()>()> FullTickOf(const std::string& example) {
-  return [example] {
-    auto tick = std::make_shared<HeldTick>(example);
+std::function<std::function<void()>()> FullTickOf(const std::string& example,
+                                                  Architecture architecture) {
+  return [=] {
+    auto tick = std::make_shared<HeldTick>(example, architecture);
     return [tick] { tick->Full(); };
   };
 }
@@ -20,7 +21,9 @@ int main(int argc, char** argv) {
   vmech::Kernels kernels;
   for (const char* example :
        {"crank", "two-link-arm", "slider-crank", "four-bar", "rssr", "bennett", "stewart-gough"}) {
-    kernels[example] = vmech::FullTickOf(example);
+    kernels[example] = vmech::FullTickOf(example, vmech::Architecture::kCoupled);
+    kernels[std::string(example) + "_paper"] =
+        vmech::FullTickOf(example, vmech::Architecture::kPaper);
   }
   return vmech::RunKernel(kernels, argc, argv);
 }
