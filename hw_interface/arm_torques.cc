@@ -8,6 +8,35 @@
 #include "vmech/solvers/stopping_rule.h"
 
 namespace vmech {
+namespace {
+
+/// Row and column of the largest entry from row and column `first` on; columns have six rows.
+std::pair<int, int> LargestBeyond(int first, int columns, const double* const* column) noexcept {
+  std::pair<int, int> at{first, first};
+  double largest = 0;
+  for (int j = first; j < columns; ++j) {
+    for (int i = first; i < 6; ++i) {
+      const double size = std::abs(column[j][i]);
+      if (size > largest) largest = size, at = {i, j};
+    }
+  }
+  return at;
+}
+
+/// Column k becomes that of the unit matrix, with the pivot from `row`.
+void Eliminate(int k, int row, int columns, double* const* column) noexcept {
+  std::array<double, 6> factor;
+  std::swap(column[k][k], column[k][row]);
+  const double inverse = 1 / column[k][k];
+  for (int i = 0; i < 6; ++i) factor[i] = i == k ? 0 : column[k][i];
+  for (int j = k + 1; j < columns; ++j) {
+    std::swap(column[j][k], column[j][row]);
+    column[j][k] *= inverse;
+    for (int i = 0; i < 6; ++i) column[j][i] -= factor[i] * column[j][k];
+  }
+}
+
+}  // namespace
 
 void PostureOptions::Validate() const {
   CheckRange("PostureOptions", "stiffness", stiffness, 0, 100);
@@ -59,37 +88,23 @@ void ArmTorques::Resolve(const MasterState& state, bool fresh,
 int ArmTorques::FindFreeMotions() noexcept {
   constexpr double kSingular = 1e-9;  // pivot over the largest: the handle cannot go that way
   const int n = arm_.joints();
+  std::array<double*, kMaxArmJoints> column;  // those of pivots first
   reduced_ = arm_.J();
-  std::array<int, kMaxArmJoints> order;  // pivots' columns first
-  std::iota(order.begin(), order.begin() + n, 0);
+  for (int j = 0; j < n; ++j) column[j] = reduced_.col(j).data();
   int rank = 0;
   for (double largest = 0; rank < std::min(6, n); ++rank) {
-    int row = rank, column = rank;
-    double pivot = 0;
-    for (int j = rank; j < n; ++j) {
-      for (int i = rank; i < 6; ++i) {
-        const double size = std::abs(reduced_(i, order[j]));
-        if (size > pivot) pivot = size, row = i, column = j;
-      }
-    }
+    const auto [row, at] = LargestBeyond(rank, n, column.data());
+    const double pivot = std::abs(column[at][row]);
     largest = std::max(largest, pivot);
     if (!(pivot > kSingular * largest)) break;
-    std::swap(order[rank], order[column]);
-    reduced_.row(rank).swap(reduced_.row(row));
-    const double inverse = 1 / reduced_(rank, order[rank]);
-    for (int j = rank; j < n; ++j) {
-      double* const a = &reduced_(0, order[j]);
-      a[rank] *= inverse;
-      if (j == rank) continue;
-      for (int i = 0; i < 6; ++i) {
-        if (i != rank) a[i] -= reduced_(i, order[rank]) * a[rank];
-      }
-    }
+    std::swap(column[rank], column[at]);
+    Eliminate(rank, row, n, column.data());
   }
+  const auto joint = [&](const double* c) { return (c - reduced_.data()) / 6; };
   for (int k = 0; k < n - rank; ++k) {
     free_.col(k).setZero();
-    free_(order[rank + k], k) = 1;
-    for (int i = 0; i < rank; ++i) free_(order[i], k) = -reduced_(i, order[rank + k]);
+    free_(joint(column[rank + k]), k) = 1;
+    for (int i = 0; i < rank; ++i) free_(joint(column[i]), k) = -column[rank + k][i];
   }
   return n - rank;
 }
