@@ -16,7 +16,10 @@ struct MechanismTickOptions {
   /// CoupledTick.
   double inertia = 1;
   PoseEstimatorOptions estimator;
-  TrackOptions track{.steps = 2};  ///< its stiffness is set from the law; the next tick goes on
+  /// Its stiffness is set from the law. Two steps: the next tick goes on from there.
+  TrackOptions track;
+
+  MechanismTickOptions() { track.steps = 2; }
 
   /// @throws std::invalid_argument naming field, value and range.
   void Validate() const;

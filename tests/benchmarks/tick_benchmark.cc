@@ -2,7 +2,7 @@
 // encoders and with a hand that pulls.
 
 #include "benchmark_statistics.h"
-#include "held_tick.h"
+#include "hw_interface/held_tick.h"
 
 namespace vmech {
 namespace {

@@ -1,6 +1,6 @@
 // Whole ticks of the haptic mode, which instruction budgets watch.
 
-#include "held_tick.h"
+#include "hw_interface/held_tick.h"
 #include "kernels.h"
 
 namespace vmech {

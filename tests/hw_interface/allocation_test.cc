@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "hw_interface/held_tick.h"
 #include "support/count_allocations.h"
 #include "support/examples.h"
 #include "vmech/hw_interface/coupled_tick.h"
@@ -78,6 +79,28 @@ TEST(CoupledTick, AllocatesNothingWhileItsHandLeadsItSlipsAndLetsGo) {
     EXPECT_EQ(allocations - before, 0) << name;
   }
 }
+
+class EveryTick : public testing::TestWithParam<std::tuple<std::string, Architecture>> {};
+
+/// A hand that pulls on the constraints all the time: rescues, limits and closing steps included.
+TEST_P(EveryTick, AllocatesNothingIn100000Ticks) {
+  const auto& [example, architecture] = GetParam();
+  HeldTick tick(example, architecture);
+  tick.Full();
+  const long before = allocations;
+  for (int k = 0; k < 100'000; ++k) tick.Full();
+  EXPECT_EQ(allocations - before, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Examples, EveryTick,
+    testing::Combine(testing::Values("crank", "two-link-arm", "slider-crank", "four-bar", "rssr",
+                                     "bennett", "stewart-gough"),
+                     testing::Values(Architecture::kCoupled, Architecture::kPaper)),
+    [](const auto& info) {
+      const bool coupled = std::get<1>(info.param) == Architecture::kCoupled;
+      return TestName(std::get<0>(info.param)) + (coupled ? "Coupled" : "Paper");
+    });
 
 }  // namespace
 }  // namespace vmech

@@ -1,10 +1,9 @@
-#include "held_tick.h"
+#include "hw_interface/held_tick.h"
 
+#include "support/examples.h"
 #include "vmech/hw_interface/coupling_choice.h"
 #include "vmech/hw_interface/simulated_master.h"
 #include "vmech/hw_interface/stability.h"
-#include "vmech/kinematics/assembly.h"
-#include "vmech/mechanisms/reader.h"
 
 namespace vmech {
 namespace {
@@ -53,7 +52,7 @@ std::unique_ptr<Tick> MakeTick(const KinematicTree& tree, int grasp, const Devic
 
 HeldTick::HeldTick(const std::string& example, Architecture architecture)
     : samples_(Wandering(&device_)) {
-  const Mechanism mechanism = ReadMechanism(std::string(VMECH_EXAMPLES) + "/" + example + ".yaml");
+  const Mechanism mechanism = Example(example);
   const int grasp = FindGrasp(mechanism, "handle");
   tree_ = std::make_unique<KinematicTree>(BuildKinematicTree(mechanism));
   tick_ = MakeTick(*tree_, grasp, device_, architecture);
