@@ -192,10 +192,6 @@ INSTANTIATE_TEST_SUITE_P(
         Malformed{"DuplicateLink", Robot("<link name='a'/>"), "a"},
         Malformed{"TwoRoots", Robot(Link("b")), "root"},
         Malformed{"UnknownLink", Robot(Joint("j", "fixed", "a", "b")), "b"},
-        Malformed{"RingWithoutRoot",
-                  "<robot name='r'>" + Link("a") + Link("b") + Joint("j", "fixed", "a", "b") +
-                      Joint("k", "fixed", "b", "a") + "</robot>",
-                  "root"},
         Malformed{
             "DeeplyNested",
             "<robot name='r'>" + Repeated("<a>", 100000) + Repeated("</a>", 100000) + "</robot>",
