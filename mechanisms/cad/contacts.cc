@@ -274,20 +274,17 @@ std::optional<ProposedJoint> ProposeJoint(const WorldFeatures& a, const WorldFea
 
 JointSeat FindSeat(const WorldFeatures& a, const WorldFeatures& b, const Posed& X_WJ,
                    const ContactOptions& options) {
-  struct Rank {
-    bool lone = true;  // no bore around it
-    double distance = INFINITY;
-    auto operator<=>(const Rank&) const = default;
-  };
-  Rank best;
+  // First those with a bore around them, then the nearest.
+  std::pair<bool, double> best{true, INFINITY};
   JointSeat seat;
   for (const auto& [own, other] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
     const WorldFeatures bores = AroundAxis(*other, CadSurface::kBore, X_WJ, options.tolerance);
     for (const CadFeature& shaft : AroundAxis(*own, CadSurface::kShaft, X_WJ, options.tolerance)) {
       const JointSeat candidate = SeatOn(shaft, bores, X_WJ, options.tolerance);
       const double middle = (shaft.X_PF.p - X_WJ.p).dot(X_WJ.R.col(2));
-      const Rank rank{candidate.positions.empty(), std::abs(middle) - 0.5 * shaft.length};
-      if (rank >= best || (rank.lone && rank.distance > options.tolerance)) continue;
+      const std::pair<bool, double> rank{candidate.positions.empty(),
+                                         std::abs(middle) - 0.5 * shaft.length};
+      if (!(rank < best) || (rank.first && rank.second > options.tolerance)) continue;
       best = rank;
       seat = candidate;
     }
