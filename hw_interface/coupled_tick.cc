@@ -108,9 +108,12 @@ TickOutput CoupledTick::Step(const TickInput& input, std::span<double> channels)
   }
   out.status = status == CoupledStatus::kStopped ? TickStatus::kHeld : TickStatus::kOk;
   last_F_ *= std::exp(-period_ / kFade);
-  if (input.held) last_F_ = -options_.scale * dynamics_.w();
+  if (input.held) {
+    last_F_ = -options_.scale * dynamics_.w();
+    stored_ = options_.scale * dynamics_.Energy();
+  }
   out.F_Ho_W = last_F_;
-  out.stored_energy = options_.scale * dynamics_.Energy();
+  out.stored_energy = stored_;  // what it does alone is no business of the hand's
   Account(status, channels);
   return out;
 }

@@ -67,6 +67,7 @@ class CoupledTick : public Tick {
   double period_;
   bool has_hand_ = false;
   Vector6d last_F_ = Vector6d::Zero();
+  double stored_ = 0;  // when it was last held [J]
   Posed X_WH_;
   Vector6d V_WH_ = Vector6d::Zero();
   JointPeaks peaks_;
