@@ -14,7 +14,9 @@ namespace {
 class RecordingFile : public testing::Test {
  protected:
   static Recording Sample() {
-    Recording recording{"a device, with a comma", 1e-3, {"closure", "bearing pin"}, {}};
+    Recording recording;
+    recording.device = "a device, with a comma";
+    recording.channels = {"closure", "bearing pin"};
     for (int k = 0; k < 3; ++k) {
       TickRecord tick;
       tick.state.sequence = 100 + k;
