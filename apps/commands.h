@@ -79,6 +79,6 @@ struct ReplayArguments {
   std::filesystem::path motion;     ///< where the hand's motion goes as a table; empty: nowhere
   bool quiet = false;
 };
-int RunReplay(const ReplayArguments& arguments);
+int RunReplay(const ReplayArguments& replay);
 
 }  // namespace vmech

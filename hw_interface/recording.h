@@ -40,8 +40,8 @@ struct Recording {
   HandlePhysics linear, angular;  ///< of the device
   RecordingNotes notes;
 
-  /// Of the first note with this key; empty if there is none.
-  std::string Note(std::string_view key) const;
+  /// Of the first note with the wanted key; empty if there is none.
+  std::string Note(std::string_view wanted) const;
 };
 
 /// A table in CSV: comment lines "# vmech recording 1", "# device ...", "# period ..." and, where
