@@ -248,10 +248,11 @@ bool WeightedStep::FinishWithoutDerivatives(ConstrainedLeastSquares& problem, do
   if (length > kFast * last_length || length * MaxAbs(mu) > kNegligibleStep) return false;
   problem.Plus(*x, dx, &trial_x_);
   problem.Evaluate(trial_x_, &at_trial_.r, nullptr, &at_trial_.c, nullptr);
-  if (!(length * MaxAbs(at_trial_.r) <= kNegligibleStep)) return false;
+  if (!std::isfinite(at_trial_.r.sum() + at_trial_.c.sum())) return false;  // MaxAbs sees no NaN
+  if (length * MaxAbs(at_trial_.r) > kNegligibleStep) return false;
   FindChordStep(lambda, mu);
   const double chord = MaxAbs(chord_dx_);
-  if (!(chord * chord <= kNegligibleStep * length)) return false;
+  if (chord * chord > kNegligibleStep * length) return false;
   problem.Plus(trial_x_, chord_dx_, &trial_x_);
   if (!WithinBounds(problem, trial_x_)) return false;
   std::swap_ranges(x->begin(), x->end(), trial_x_.begin());

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/QR>
+#include <limits>
 
 #include "textbook_problems.h"
 #include "vmech/solvers/augmented_lagrangian.h"
@@ -79,6 +80,30 @@ TEST(Penalty, StepRefusesValuesThatAreNotFinite) {
   PenaltyWorkspace workspace(*problem);
   VectorXd x = VectorXd::Constant(2, std::numeric_limits<double>::quiet_NaN());
   EXPECT_FALSE(Step(*problem, PenaltyOptions{}, &x, &workspace).ok);
+}
+
+/// The point of the unit circle at (0.6, 0.8); where no derivatives are asked for, not a number.
+class ValuesOnlyAreUndefined final : public ConstrainedLeastSquares {
+ public:
+  ValuesOnlyAreUndefined() : ConstrainedLeastSquares({2, 2, 2, 1}) {}
+  void Evaluate(const VectorXd& x, VectorXd* r, MatrixXd* J, VectorXd* c, MatrixXd* C) override {
+    values_only += J == nullptr;
+    const double undefined = J ? 0 : std::numeric_limits<double>::quiet_NaN();
+    if (r) *r << x[0] - 0.6 + undefined, x[1] - 0.8;
+    if (J) J->setIdentity();
+    if (c) *c << x.squaredNorm() - 1;
+    if (C) *C = 2 * x.transpose();
+  }
+  int values_only = 0;
+};
+
+TEST(Penalty, TakesNoLastStepToWhereItIsNotDefined) {
+  ValuesOnlyAreUndefined problem;
+  PenaltyWorkspace workspace(problem);
+  VectorXd x = Eigen::Vector2d(0.7, 1);
+  EXPECT_EQ(Solve(problem, PenaltyOptions{}, &x, &workspace).claim, SolveStatus::kBiased);
+  EXPECT_GT(problem.values_only, 0);  // it was tried
+  EXPECT_LT((x - Eigen::Vector2d(0.6, 0.8)).norm(), 1e-9);
 }
 
 TEST(Penalty, RefusesOptionsOutOfRangeByName) {
