@@ -216,8 +216,7 @@ HandTracker::Progress HandTracker::Rescue() noexcept {
 void HandTracker::Close() noexcept {
   for (int i = 0;; ++i) {
     at_trial_.Evaluate(problem_, trial_);
-    if (i == kClosingSteps || at_trial_.c.lpNorm<Eigen::Infinity>() <= options_.closure_tolerance)
-      return;
+    if (i == kClosingSteps || IsClosed()) return;
     closing_workspace_.multipliers.setZero();
     if (!Step(closing_, closing_options_, &trial_, &closing_workspace_).ok) return;
   }
@@ -231,8 +230,11 @@ TrackStatus HandTracker::Judge() noexcept {
   determinant_ = BranchDeterminant();
   if (std::abs(determinant_) < kDeadZone) return TrackStatus::kDeadCentre;
   if (determinant_ < 0) return TrackStatus::kJump;
-  const bool closed = at_trial_.c.lpNorm<Eigen::Infinity>() <= options_.closure_tolerance;
-  return closed ? TrackStatus::kFollowed : TrackStatus::kLost;
+  return IsClosed() ? TrackStatus::kFollowed : TrackStatus::kLost;
+}
+
+bool HandTracker::IsClosed() const noexcept {
+  return at_trial_.c.lpNorm<Eigen::Infinity>() <= options_.closure_tolerance;
 }
 
 void HandTracker::StackJacobians() noexcept {
@@ -269,8 +271,7 @@ bool HandTracker::TryBeside(double size) noexcept {
   Close();
   StackJacobians();
   determinant_ = BranchDeterminant();
-  const bool closed = at_trial_.c.lpNorm<Eigen::Infinity>() <= options_.closure_tolerance;
-  return closed && determinant_ > 0 && WithinLimits();
+  return IsClosed() && determinant_ > 0 && WithinLimits();
 }
 
 /// From a pose in the dead zone to its side.
@@ -296,7 +297,8 @@ HandTracker::Beyond HandTracker::FindMirrorImage() noexcept {
   }
   trial_ = origin_;
   const bool near = (trial_ - q_).lpNorm<Eigen::Infinity>() <= options_.max_move;
-  return near && Judge() == TrackStatus::kJump ? Beyond::kPassage : Beyond::kUnknown;
+  const bool beyond_still = Judge() == TrackStatus::kJump;
+  return near && beyond_still && IsClosed() ? Beyond::kPassage : Beyond::kUnknown;
 }
 
 bool HandTracker::WithinLimits() const noexcept {

@@ -107,6 +107,7 @@ class HandTracker {
   bool TakeStep(bool with_curvature) noexcept;
   Progress Rescue() noexcept;
   TrackStatus Judge() noexcept;
+  bool IsClosed() const noexcept;
   void Close() noexcept;
   void StackJacobians() noexcept;
   double BranchDeterminant() noexcept;
