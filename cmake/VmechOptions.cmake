@@ -37,11 +37,13 @@ if(VMECH_WARNINGS_AS_ERRORS)
   target_compile_options(vmech_settings INTERFACE -Werror)
 endif()
 if(VMECH_SANITIZE)
-  # Instrumented code hides from g++ what is initialised: it warns inside <regex>.
   target_compile_options(vmech_settings INTERFACE -fsanitize=${VMECH_SANITIZE}
-                         -fno-omit-frame-pointer -fno-sanitize-recover=all
-                         -Wno-maybe-uninitialized)
+                         -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(vmech_settings INTERFACE -fsanitize=${VMECH_SANITIZE})
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # Instrumented code hides from g++ what is initialised: it warns inside <regex>.
+    target_compile_options(vmech_settings INTERFACE -Wno-maybe-uninitialized)
+  endif()
 endif()
 if(VMECH_BUILD_FUZZERS)
   target_compile_options(vmech_settings INTERFACE -fsanitize=fuzzer-no-link)

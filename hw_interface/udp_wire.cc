@@ -243,6 +243,7 @@ bool Decode(std::span<const std::byte> bytes, Packet* packet) {
   std::memcpy(&crc, bytes.data() + expected, sizeof crc);
   if (crc != Crc32(bytes.data(), expected)) return false;
   VisitHeader(read, packet->header);
+  if (packet->header.sent_ns < 0 || packet->header.reflected_sent_ns < 0) return false;
   switch (packet->header.kind) {
     case PacketKind::kHello:
     case PacketKind::kBye:

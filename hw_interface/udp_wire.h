@@ -27,7 +27,7 @@ struct PacketHeader {
   PacketKind kind = PacketKind::kHello;
   std::uint64_t session = 0;           ///< chosen by the host; a packet of another is not for us
   std::uint64_t sequence = 0;          ///< of the sender, grows with each packet
-  std::int64_t sent_ns = 0;            ///< the sender's clock
+  std::int64_t sent_ns = 0;            ///< the sender's clock, never before its zero
   std::int64_t reflected_sent_ns = 0;  ///< `sent_ns` of the newest packet from the other side
 };
 
@@ -53,8 +53,9 @@ using PacketBytes = std::array<std::byte, kLargestPacket>;
 std::size_t Encode(const Packet& packet, PacketBytes* bytes) noexcept;
 
 /// Reads a packet; false, and `packet` undefined, unless the bytes are exactly one well-formed
-/// packet: known kind, its length, checksum, finite numbers, rotations that are rotations, words
-/// within their enumerations. No allocation except for the name of kInfo.
+/// packet: known kind, its length, checksum, no negative times (their differences could overflow),
+/// finite numbers, rotations that are rotations, words within their enumerations. No allocation
+/// except for the name of kInfo.
 [[nodiscard]] bool Decode(std::span<const std::byte> bytes, Packet* packet);
 
 }  // namespace vmech

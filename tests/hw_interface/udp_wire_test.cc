@@ -10,7 +10,7 @@ namespace {
 
 Packet StatePacket() {
   Packet packet;
-  packet.header = {PacketKind::kState, 7, 8, 9, -10};
+  packet.header = {PacketKind::kState, 7, 8, 9, 10};
   packet.state.sequence = 11;
   packet.state.X_DH.R = Eigen::AngleAxisd(0.3, Vector3d::UnitY()).toRotationMatrix();
   packet.state.X_DH.p = Vector3d(1, 2, 3);
@@ -30,7 +30,7 @@ TEST(UdpWire, StateComesBackAsItWas) {
   Packet out;
   ASSERT_TRUE(Decode(Bytes(bytes, Encode(StatePacket(), &bytes)), &out));
   EXPECT_EQ(out.header.session, 7u);
-  EXPECT_EQ(out.header.reflected_sent_ns, -10);
+  EXPECT_EQ(out.header.reflected_sent_ns, 10);
   EXPECT_EQ(out.state.sequence, 11u);
   EXPECT_EQ(out.state.X_DH.R, StatePacket().state.X_DH.R);
   EXPECT_EQ(out.state.applied_F_Ho_D[4], -5);
@@ -100,6 +100,17 @@ TEST(UdpWire, RefusesWhatIsNotANumberOrNotARotation) {
   EXPECT_FALSE(Decode(Bytes(bytes, Encode(packet, &bytes)), &out));
   packet = StatePacket();
   packet.state.X_DH.R(0, 0) += 0.01;
+  EXPECT_FALSE(Decode(Bytes(bytes, Encode(packet, &bytes)), &out));
+}
+
+TEST(UdpWire, RefusesTimesWhoseDifferenceCouldOverflow) {
+  PacketBytes bytes;
+  Packet out;
+  Packet packet = StatePacket();
+  packet.header.reflected_sent_ns = std::numeric_limits<std::int64_t>::min();
+  EXPECT_FALSE(Decode(Bytes(bytes, Encode(packet, &bytes)), &out));
+  packet = StatePacket();
+  packet.header.sent_ns = -1;
   EXPECT_FALSE(Decode(Bytes(bytes, Encode(packet, &bytes)), &out));
 }
 
