@@ -1,5 +1,7 @@
 #pragma once
 
+#include <valgrind/callgrind.h>
+
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
@@ -11,9 +13,9 @@ namespace vmech {
 /// A piece of work by name. The map's functions do the set-up and return the work proper.
 using Kernels = std::map<std::string, std::function<std::function<void()>()>>;
 
-/// The main function of a program `PROGRAM KERNEL TIMES`: sets the kernel up and runs it so many
-/// times. Two runs with different TIMES tell what one call costs, set-up excluded; this is how
-/// instruction_counts.py measures.
+/// The main function of a program `PROGRAM KERNEL TIMES`: sets the kernel up, calls it as often as
+/// is worth to warm it, then TIMES more. Callgrind is on for these alone, and is told nothing by a
+/// program that runs without it; instruction_counts.py divides what it counts by TIMES.
 inline int RunKernel(const Kernels& kernels, int argc, char** argv) {
   const auto kernel = argc == 3 ? kernels.find(argv[1]) : kernels.end();
   if (kernel == kernels.end()) {
@@ -21,8 +23,12 @@ inline int RunKernel(const Kernels& kernels, int argc, char** argv) {
     for (const auto& [name, set_up] : kernels) std::fprintf(stderr, "  %s\n", name.c_str());
     return EXIT_FAILURE;
   }
+  constexpr int kWarmUp = 100;
   const std::function<void()> work = kernel->second();
+  for (int times = kWarmUp; times > 0; --times) work();
+  CALLGRIND_START_INSTRUMENTATION;
   for (int times = std::atoi(argv[2]); times > 0; --times) work();
+  CALLGRIND_STOP_INSTRUMENTATION;
   return EXIT_SUCCESS;
 }
 
