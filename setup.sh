@@ -77,7 +77,7 @@ run_demo() {
 
 run_tests() {
   install_packages core cad doors tests tools
-  cmake --preset dev
+  cmake --preset dev -DVMECH_REQUIRE_PACKAGES=ON
   cmake --build --preset dev
   ctest --preset dev
 }

@@ -7,10 +7,22 @@ option(VMECH_LINT "run clang-format, clang-tidy and the text rules as tests"
        ${PROJECT_IS_TOP_LEVEL})
 option(VMECH_WARNINGS_AS_ERRORS "treat warnings as errors" OFF)
 option(VMECH_FORBID_MALLOC "make Eigen assert on allocations where they are forbidden" OFF)
+option(VMECH_REQUIRE_PACKAGES "fail where a package is absent, rather than leave out what needs it"
+       OFF)
 option(VMECH_BUILD_FUZZERS "build the fuzz targets; needs clang" OFF)
 set(VMECH_SANITIZE "" CACHE STRING "sanitizers, for example address,undefined")
 set(VMECH_ARCH "x86-64-v3" CACHE STRING
     "-march of the library; empty for the compiler's own choice")
+
+# vmech_leave_out(<part> <Debian package>): says that a part is not built, nor tested, for want of a
+# package; an error where all are required.
+function(vmech_leave_out part package)
+  if(VMECH_REQUIRE_PACKAGES)
+    message(FATAL_ERROR "${part} needs ${package}, which was not found: install it, or set "
+                        "VMECH_REQUIRE_PACKAGES=OFF to do without")
+  endif()
+  message(STATUS "${part} is off, ${package} was not found")
+endfunction()
 
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
