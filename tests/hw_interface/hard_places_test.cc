@@ -19,27 +19,25 @@ constexpr double kPeriod = 1e-3;
 /// Farther than any joint moves in a tick of these sessions, nearer than the other branch [rad].
 constexpr double kJump = 0.15;
 
-/// Watches the pose of a tick for jumps.
+/// Watches the pose of a tick for jumps. Allocates no more than the tick does.
 template <typename Inner>
 class Watched : public Tick {
  public:
-  Watched(Inner* inner, std::function<VectorXd()> pose)
-      : inner_(inner), pose_(std::move(pose)), last_(pose_()) {}
+  Watched(Inner* inner, const VectorXd& q) : inner_(inner), q_(q), last_(q) {}
   std::vector<std::string> ChannelNames() const override { return inner_->ChannelNames(); }
   Posed GraspFrame() const noexcept override { return inner_->GraspFrame(); }
   void Reset() noexcept override { inner_->Reset(); }
   TickOutput Step(const TickInput& input, std::span<double> channels) noexcept override {
     const TickOutput out = inner_->Step(input, channels);
-    const VectorXd q = pose_();
-    farthest = std::max(farthest, (q - last_).cwiseAbs().maxCoeff());
-    last_ = q;
+    farthest = std::max(farthest, (q_ - last_).cwiseAbs().maxCoeff());
+    last_ = q_;
     return out;
   }
   double farthest = 0;
 
  private:
   Inner* inner_;
-  std::function<VectorXd()> pose_;
+  const VectorXd& q_;
   VectorXd last_;
 };
 
@@ -109,7 +107,7 @@ struct Session {
 TEST(HardPlaces, PistonIsDraggedBeyondBothDeadCentresWithoutAJump) {
   Session session(PistonInHand(), Vector3d(0.12, 0, 0));
   CoupledTick tick = session.Coupled();
-  Watched watched(&tick, [&] { return tick.dynamics().q(); });
+  Watched watched(&tick, tick.dynamics().q());
   const RunSummary summary = session.Run(&watched, session.choice.Safety());
   EXPECT_EQ(summary.status, RunStatus::kFinished) << summary.FullReport();
   EXPECT_LT(watched.farthest, kJump);
@@ -120,7 +118,7 @@ TEST(HardPlaces, PistonIsDraggedBeyondBothDeadCentresWithoutAJump) {
 TEST(HardPlaces, ElbowStopsAtItsLimitAndSaysSo) {
   Session session(StiffElbow(), Vector3d(0.1, 0.1, 0));
   CoupledTick tick = session.Coupled();
-  Watched watched(&tick, [&] { return tick.dynamics().q(); });
+  Watched watched(&tick, tick.dynamics().q());
   const RunSummary summary = session.Run(&watched, session.choice.Safety());
   EXPECT_EQ(summary.status, RunStatus::kFinished) << summary.FullReport();
   EXPECT_GT(tick.summary().at_limit, 10);
@@ -158,7 +156,7 @@ TEST(HardPlaces, PapersTickKeepsItsBranchAtDeadCentresAndReportsThem) {
   options.law.stiffness << Vector3d::Constant(600), Vector3d::Constant(1);
   options.inertia = 0;
   MechanismTick tick(session.tree, 0, session.q, session.master.info(), options);
-  Watched watched(&tick, [&] { return tick.q(); });
+  Watched watched(&tick, tick.q());
   session.Run(&watched, SafetyOptions{});
   const TrackSummary& tracking = tick.tracking();
   EXPECT_GT(tracking.dead_centre + tracking.catching_up + tracking.jumps, 0);

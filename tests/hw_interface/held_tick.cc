@@ -72,7 +72,7 @@ const MasterState& HeldTick::NextSample() {
   return state_;
 }
 
-void HeldTick::Full() {
+void HeldTick::Full() noexcept VMECH_NONBLOCKING {
   const MasterState& state = NextSample();
   StepOn(state);
   FilterOf(state);

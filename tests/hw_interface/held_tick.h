@@ -7,6 +7,7 @@
 #include "vmech/hw_interface/arm_torques.h"
 #include "vmech/hw_interface/coupled_tick.h"
 #include "vmech/hw_interface/mechanism_tick.h"
+#include "vmech/hw_interface/nonblocking.h"
 #include "vmech/hw_interface/safety_filter.h"
 
 namespace vmech {
@@ -25,7 +26,7 @@ class HeldTick {
   HeldTick(const std::string& example, Architecture architecture);
 
   /// All that a runner does between a sample and the torques: mechanism, safety filter, arm.
-  void Full();
+  void Full() noexcept VMECH_NONBLOCKING;
   // Its stages, each on the next sample.
   void Step();
   void Filter();
