@@ -13,7 +13,7 @@ namespace vmech {
 namespace {
 
 constexpr int kOwnChannels = 4;
-constexpr double kFade = 0.02;  // [s]: of the wrench on a hand that has let go
+constexpr double kFade = 0.02;  // [s]: of the end of the wrench on a hand that has let go
 
 double DistanceToLine(const Vector3d& p, const Vector3d& from, const Vector3d& to) {
   const Vector3d way = to - from;
@@ -48,6 +48,7 @@ HandCoupling AtTheMechanism(const CoupledTickOptions& options) {
 
 void CoupledTickOptions::Validate() const {
   CheckRange("CoupledTickOptions", "scale", scale, 1e-6, 1e3);
+  CheckRange("CoupledTickOptions", "grasp_rate", grasp_rate, 10, 1e6);
   CheckRange("CoupledTickOptions", "smoothing", smoothing, 0, 0.1);
 }
 
@@ -58,6 +59,7 @@ CoupledTick::CoupledTick(const KinematicTree& tree, int grasp, const VectorXd& q
       grasp_(GraspFrameOf(tree, grasp)),
       dynamics_(tree, grasp_, AtTheMechanism(options), period, q),
       period_(period),
+      hand_(AtTheMechanism(options), options.grasp_rate / options.scale, period),
       peaks_(tree.mechanism) {}
 
 std::vector<std::string> CoupledTick::ChannelNames() const {
@@ -82,15 +84,20 @@ bool CoupledTick::TakeHold(const Posed& X_WH) noexcept {
     grasp.X_BG = X_BH;
   }
   dynamics_.TakeHold(grasp);
-  has_hand_ = false;
-  V_WH_.setZero();
+  hand_.Open();
+  fading_ += felt_;
+  felt_.setZero();
+  holds_ = true;
   return true;
 }
 
 void CoupledTick::Reset() noexcept {
   dynamics_.TakeHold(grasp_);
   dynamics_.Stop();
-  last_F_.setZero();
+  hand_ = ClosingHand(AtTheMechanism(options_), options_.grasp_rate / options_.scale, period_);
+  holds_ = true;
+  felt_.setZero();
+  fading_.setZero();
   has_hand_ = false;
   V_WH_.setZero();
   peaks_.Reset();
@@ -99,23 +106,60 @@ void CoupledTick::Reset() noexcept {
 
 TickOutput CoupledTick::Step(const TickInput& input, std::span<double> channels) noexcept {
   if (input.fresh || !has_hand_) EstimateTwist(input);
-  if (!input.held) dynamics_.LetGo();
-  const CoupledStatus status = dynamics_.Step(X_WH_, V_WH_);
+  const CoupledStatus status = Move(input);
   TickOutput out;
   if (status == CoupledStatus::kFailed) {
     out.status = TickStatus::kFailed;
     return out;
   }
   out.status = status == CoupledStatus::kStopped ? TickStatus::kHeld : TickStatus::kOk;
-  last_F_ *= std::exp(-period_ / kFade);
-  if (input.held) {
-    last_F_ = -options_.scale * dynamics_.w();
-    stored_ = options_.scale * dynamics_.Energy();
-  }
-  out.F_Ho_W = last_F_;
-  out.stored_energy = stored_;  // what it does alone is no business of the hand's
+  Feel(input.held);
+  out.F_Ho_W = felt_ + fading_;
+  // What the mechanism does alone is no business of the hand's.
+  out.stored_energy = stored_ + FadingEnergy();
   Account(status, channels);
   return out;
+}
+
+CoupledStatus CoupledTick::Move(const TickInput& input) noexcept {
+  if (!input.held && holds_) {
+    dynamics_.LetGo();
+    fading_ += felt_;
+    felt_.setZero();
+    holds_ = false;
+  }
+  if (holds_ && hand_.closing()) return hand_.Step(X_WH_, V_WH_, &dynamics_);
+  return dynamics_.Step(X_WH_, V_WH_);
+}
+
+void CoupledTick::Feel(bool held) noexcept {
+  Fade();
+  if (held) {
+    felt_ = -options_.scale * dynamics_.w();
+    stored_ = options_.scale * dynamics_.Energy();
+  }
+}
+
+/// The wrench of a spring that nothing holds any more. It falls slowly; where it drives the hand it
+/// falls with what that takes out of the spring,
+///
+///   E = F'K^-1 F / 2,   (1 + c)/2 F.dX <= (1 - c^2) E   by   c = 1 - F.dX/2E.
+void CoupledTick::Fade() noexcept {
+  const double force = fading_.head<3>().norm(), most = options_.grasp_rate * period_;
+  double left = std::exp(-period_ / kFade);
+  if (force * (1 - left) > most) left = 1 - most / force;
+  const double energy = FadingEnergy(), work = period_ * fading_.dot(V_WH_);
+  if (work > 0) left *= std::max(0.0, 1 - work / (2 * energy));
+  fading_ *= left;
+}
+
+double CoupledTick::FadingEnergy() const noexcept {
+  double energy = 0;
+  for (int i = 0; i < 6; ++i) {
+    const double K = options_.coupling.stiffness[i];
+    if (K > 0) energy += 0.5 * fading_[i] * fading_[i] / K;
+  }
+  return energy;
 }
 
 void CoupledTick::Account(CoupledStatus status, std::span<double> channels) noexcept {

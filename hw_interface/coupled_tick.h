@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vmech/dynamics/coupled_dynamics.h"
+#include "vmech/hw_interface/closing_hand.h"
 #include "vmech/hw_interface/joint_peaks.h"
 #include "vmech/hw_interface/tick.h"
 
@@ -13,6 +14,9 @@ struct CoupledTickOptions {
   /// Force at the hand over force at the mechanism, in [1e-6, 1e3]: 0.1 makes it ten times as
   /// light.
   double scale = 1;
+  /// Fastest growth of the force at a grasp, and its fall at a release [N/s], in [10, 1e6]; lower
+  /// is softer, and a fast link slips further through the hand.
+  double grasp_rate = 1000;
   double smoothing = 2e-3;  ///< time constant of the hand's velocity [s], in [0, 0.1]
 
   /// @throws std::invalid_argument naming field, value and range.
@@ -34,8 +38,9 @@ struct CoupledSummary {
 /// The second architecture: a mechanism that moves by its own dynamics, and between it and the hand
 /// a spring and a damper (CoupledDynamics). The hand feels true inertia at frequencies far below
 /// that of the mechanism on the spring, needs no acceleration, and can let freedoms go that its
-/// grasp does not reach. A hand that lets go feels the last wrench fade out; the mechanism then
-/// moves alone. No allocation after construction.
+/// grasp does not reach. A hand that closes on a link, however fast, takes hold of it with a force
+/// that grows no faster than `grasp_rate` (ClosingHand); one that lets go feels the last wrench
+/// fade out as slowly, and the mechanism moves alone. No allocation after construction.
 class CoupledTick : public Tick {
  public:
   /// Keeps a reference to the tree. `q`: a closed pose, where the hand takes hold.
@@ -58,6 +63,10 @@ class CoupledTick : public Tick {
 
  private:
   void EstimateTwist(const TickInput& input) noexcept;
+  CoupledStatus Move(const TickInput& input) noexcept;
+  void Feel(bool held) noexcept;
+  void Fade() noexcept;
+  double FadingEnergy() const noexcept;
   void Account(CoupledStatus status, std::span<double> channels) noexcept;
 
   const KinematicTree& tree_;
@@ -65,9 +74,11 @@ class CoupledTick : public Tick {
   vmech::GraspFrame grasp_;  // where the hand takes hold by name
   CoupledDynamics dynamics_;
   double period_;
-  bool has_hand_ = false;
-  Vector6d last_F_ = Vector6d::Zero();
-  double stored_ = 0;  // when it was last held [J]
+  ClosingHand hand_;
+  bool has_hand_ = false, holds_ = true;
+  Vector6d felt_ = Vector6d::Zero();    // of the mechanism that is held
+  Vector6d fading_ = Vector6d::Zero();  // of one that was
+  double stored_ = 0;                   // when it was last held [J]
   Posed X_WH_;
   Vector6d V_WH_ = Vector6d::Zero();
   JointPeaks peaks_;

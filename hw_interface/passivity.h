@@ -48,6 +48,8 @@ class PassivityController {
 
   /// Forgets the energy; the next stored energy is the new zero.
   void Reset() noexcept;
+  /// Another mechanism or grasp from now on: the next stored energy is the new zero, debts stay.
+  void Rebase() noexcept { knows_stored_ = false; }
   /// What happened in the `elapsed` [s] > 0 since the last sample: the wrench at work, the handle's
   /// displacement dX = [dp; dr], the virtual side's stored energy now.
   void Observe(const Vector6d& F_Ho_D, const Vector6d& dX, double elapsed,

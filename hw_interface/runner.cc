@@ -145,10 +145,11 @@ void Runner::GraspOrLetGo() noexcept {
   const bool closes = GripperCloses();
   if (closes == holds_) return;
   holds_ = closes;
+  safety_.Rebase();
   if (!closes) return;
-  safety_.Restart();
   ++summary_.grasps;
   if (!tick_->TakeHold(registration_.HandInWorld(state_.X_DH))) {
+    safety_.Restart();
     registration_ = GraspedAt(options_.R_WD, state_.X_DH, tick_->GraspFrame());
     tick_->Reset();
   }

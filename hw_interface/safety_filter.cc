@@ -67,7 +67,6 @@ SafetyFilter::SafetyFilter(const SafetyOptions& options, const DeviceInfo& info)
 
 void SafetyFilter::Restart() noexcept {
   opened_for_ = 0;
-  last_.setZero();
   passivity_.Reset();
 }
 

@@ -96,6 +96,8 @@ class SafetyFilter {
 
   /// Starts the ramp again: at a grasp, a release or a change of gains. Energy starts anew.
   void Restart() noexcept;
+  /// Another grasp or none: what the mechanism stores then is the new zero, without a ramp.
+  void Rebase() noexcept { passivity_.Rebase(); }
   /// Releases the latch; what caused it must be over, else the next Apply latches again.
   void Rearm() noexcept;
 
