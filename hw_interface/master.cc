@@ -4,7 +4,29 @@
 
 #include <stdexcept>
 
+#include "vmech/solvers/stopping_rule.h"
+
 namespace vmech {
+namespace {
+
+/// What any device can be; gains, clamps and the loop's period are computed from it.
+void CheckPhysics(const DeviceInfo& info) {
+  const std::string device = fmt::format("device '{}'", info.name);
+  constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+  CheckRange(device, "period", info.period, 1e-6, 1);
+  CheckRange(device, "delay", info.delay, 0, 1);
+  for (const HandlePhysics* handle : {&info.linear, &info.angular}) {
+    const std::string part = device + (handle == &info.linear ? ".linear" : ".angular");
+    CheckRange(part, "mass", handle->mass, 0, 1e6);
+    CheckRange(part, "damping", handle->damping, 0, 1e6);
+    CheckRange(part, "coulomb", handle->coulomb, 0, 1e6);
+    CheckRange(part, "resolution", handle->resolution, 0, 1);
+    CheckRange(part, "peak", handle->peak, 0, 1e6);
+    CheckRange(part, "max_speed", handle->max_speed, 0, kNoLimit);
+  }
+}
+
+}  // namespace
 
 void Master::Require(Lifecycle wanted, const char* verb) const {
   if (lifecycle_ == wanted) return;
@@ -14,7 +36,14 @@ void Master::Require(Lifecycle wanted, const char* verb) const {
 
 void Master::Configure() {
   Require(Lifecycle::kUnconfigured, "Configure");
-  info_ = OnConfigure();
+  DeviceInfo info = OnConfigure();
+  try {
+    CheckPhysics(info);
+  } catch (...) {
+    OnShutdown();
+    throw;
+  }
+  info_ = std::move(info);
   lifecycle_ = Lifecycle::kInactive;
 }
 

@@ -75,8 +75,8 @@ class Master {
   Master& operator=(const Master&) = delete;
   virtual ~Master() = default;
 
-  /// Opens the link and asks the device what it is. @throws std::runtime_error if it cannot be
-  /// had, std::logic_error if the life cycle does not allow it (so do Activate and Recover).
+  /// Opens the link and asks the device what it is. @throws std::runtime_error if it cannot be had,
+  /// std::logic_error if its physics is impossible or the life cycle forbids it (so do the others).
   void Configure();
   void Activate();
   void Deactivate() noexcept;

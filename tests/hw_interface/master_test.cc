@@ -11,13 +11,15 @@ class RecordingMaster : public Master {
   ~RecordingMaster() override { Shutdown(); }
   MasterCommand last;
   IoStatus next_read = IoStatus::kOk;
+  DeviceInfo stated;
+  bool let_go = false;
 
  private:
   DeviceInfo OnConfigure() override {
-    DeviceInfo info;
-    info.takes_wrench = true;
-    return info;
+    stated.takes_wrench = true;
+    return stated;
   }
+  void OnShutdown() noexcept override { let_go = true; }
   IoStatus OnRead(std::int64_t, MasterState*) noexcept override { return next_read; }
   IoStatus OnWrite(const MasterCommand& command) noexcept override {
     last = command;
@@ -77,6 +79,23 @@ TEST(Master, StaysAtFaultUntilItRecovers) {
   master.Recover();
   master.Activate();
   EXPECT_EQ(master.lifecycle(), Lifecycle::kActive);
+}
+
+TEST(Master, LetsADeviceGoThatStatesImpossiblePhysics) {
+  RecordingMaster master;
+  master.stated.name = "odd";
+  master.stated.period = 1e-12;
+  EXPECT_THROW(master.Configure(), std::invalid_argument);
+  EXPECT_TRUE(master.let_go);
+  EXPECT_EQ(master.lifecycle(), Lifecycle::kUnconfigured);
+  master.stated.period = 1e-3;
+  master.stated.angular.damping = -2;
+  try {
+    master.Configure();
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(), "device 'odd'.angular.damping = -2, must be in [0, 1000000]");
+  }
 }
 
 TEST(Master, SaysWhichStepOfTheLifeCycleIsMissing) {
