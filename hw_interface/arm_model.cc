@@ -38,7 +38,7 @@ ArmModel::ArmModel(std::shared_ptr<const ArmDescription> arm)
       bias_(VectorXd::Zero(joints())),
       rest_(VectorXd::Zero(joints())),
       acceleration_(VectorXd::Zero(joints())),
-      factor_(joints()) {
+      factor_(MatrixXd::Identity(joints(), joints())) {  // one not computed yet cannot be copied
   SetPosture(arm_->posture.data());
 }
 

@@ -52,10 +52,12 @@ PluginMaster::PluginMaster(const std::filesystem::path& library, const std::stri
   } else if (create(parameters.c_str(), &plugin_, error.data(), error.size()) != 0) {
     problem = fmt::format("refuses '{}': {}", parameters, error.data());
   } else if (plugin_.version != VMECH_PLUGIN_VERSION) {
+    // Another version may have another table: nothing in it can be called.
     problem = fmt::format("made for version {} of plugin.h, this is {}; build it again",
                           plugin_.version, VMECH_PLUGIN_VERSION);
   } else if (!IsComplete(plugin_)) {
     problem = "its table of functions has gaps";
+    if (plugin_.destroy) plugin_.destroy(plugin_.device);
   }
   if (problem.empty()) return;
   dlclose(library_);

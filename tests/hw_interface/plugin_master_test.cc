@@ -52,6 +52,7 @@ TEST(PluginMaster, SaysWhyAPluginCannotBeUsed) {
   EXPECT_EQ(ErrorOf(library, "broken"),
             "plug-in " + library + ": refuses 'broken': no such serial number");
   EXPECT_NE(ErrorOf(library, "old").find("made for version 0"), std::string::npos);
+  EXPECT_NE(ErrorOf(library, "gaps").find("has gaps"), std::string::npos);
   EXPECT_NE(ErrorOf("/nowhere.so", "").find("/nowhere.so"), std::string::npos);
 }
 
