@@ -149,6 +149,8 @@ TEST(CoupledTick, HandThatLetsGoFeelsTheWrenchFadeAndTheMechanismMovesOn) {
 }
 
 TEST(Runner, GripperTakesHoldAndLetsGoWithoutAJump) {
+  // Swinging alone gives up to 10 N a tick; taking hold of a swinging link at once gave 130 N.
+  constexpr double kJump = 20;
   for (const char* name : {"crank", "four-bar"}) {
     SimulatedMasterOptions arm;
     arm.squeeze = [](double t) { return std::fmod(t, 2.0) < 1 ? -0.4 : 0.4; };
@@ -167,7 +169,7 @@ TEST(Runner, GripperTakesHoldAndLetsGoWithoutAJump) {
     Vector3d before = Vector3d::Zero();
     for (const TickRecord& record : runner.Kept().ticks) {
       const Vector3d force = record.sent_F_Ho_D.head<3>();
-      ASSERT_LT((force - before).norm(), 10) << name;
+      ASSERT_LT((force - before).norm(), kJump) << name;
       before = force;
     }
   }
