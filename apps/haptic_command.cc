@@ -52,7 +52,7 @@ class StatusLine {
         fmt::print(stderr, "\r{:>9} ticks  {:>7.2f} N  compute {:>6.1f} us  skipped {:<6} {:<15}",
                    live.ticks.load(), live.force.load(),
                    1e-3 * static_cast<double>(live.compute_ns.load()), live.skipped.load(),
-                   NameOf(live.off.load()));
+                   live.off == ForceOff::kNone ? "force on" : NameOf(live.off));
         std::this_thread::sleep_for(std::chrono::milliseconds(100));
       }
       fmt::print(stderr, "\r{:78}\r", "");
@@ -94,6 +94,8 @@ RunnerOptions OptionsOf(const HapticArguments& arguments, const Matrix3d& R_WD,
   RunnerOptions options;
   options.seconds = arguments.seconds;
   options.record = !arguments.record.empty();
+  // A recording does not hold the arm: its replay is the same to the bit without the observer.
+  if (options.record) options.observer.bandwidth = 0;
   if (arguments.post_mortem) options.post_mortem = arguments.file.stem().string() + "-fault.csv";
   options.R_WD = R_WD;
   options.safety = safety;

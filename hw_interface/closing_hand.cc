@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "vmech/hw_interface/displaced.h"
 #include "vmech/kinematics/rotation_error.h"
 
 namespace vmech {
@@ -10,14 +11,6 @@ namespace {
 constexpr double kLongest = 0.5;   // [s]: until the hand has closed
 constexpr double kSwiftest = 300;  // [m/s^2]: that is foreseen; more is a blow, which does not last
 constexpr double kLever = 0.1;     // l [m], of a hand
-
-Posed Displaced(const Posed& X, const Vector6d& way) {
-  const Vector3d turn = way.tail<3>();
-  const double angle = turn.norm();
-  Posed moved{X.R, X.p + way.head<3>()};
-  if (angle > 0) moved.R = Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() * X.R;
-  return moved;
-}
 
 /// The factor that brings a pull within the hold; at most 1.
 double ShareOf(double pull, double hold) {

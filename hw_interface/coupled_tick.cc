@@ -191,8 +191,14 @@ std::string CoupledTick::FullReport() const {
   return "  " + summary_.BriefReport() + "\n" + peaks_.Report();
 }
 
-/// Differences through a filter of first order.
+/// As observed, or differences through a filter of first order.
 void CoupledTick::EstimateTwist(const TickInput& input) noexcept {
+  if (input.observed) {
+    X_WH_ = input.observed->X_WH;
+    V_WH_ = input.observed->V_WH;
+    has_hand_ = true;
+    return;
+  }
   if (has_hand_) {
     const double elapsed = std::max(input.elapsed, period_);
     const double share = options_.smoothing > 0 ? 1 - std::exp(-elapsed / options_.smoothing) : 1;

@@ -17,7 +17,8 @@ struct CoupledTickOptions {
   /// Fastest growth of the force at a grasp, and its fall at a release [N/s], in [10, 1e6]; lower
   /// is softer, and a fast link slips further through the hand.
   double grasp_rate = 1000;
-  double smoothing = 2e-3;  ///< time constant of the hand's velocity [s], in [0, 0.1]
+  /// Time constant of the hand's velocity where nobody observes it [s], in [0, 0.1].
+  double smoothing = 2e-3;
 
   /// @throws std::invalid_argument naming field, value and range.
   void Validate() const;

@@ -1,8 +1,11 @@
 #include "vmech/hw_interface/coupling_choice.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "vmech/dynamics/newton_euler.h"
 #include "vmech/kinematics/forward_kinematics.h"
@@ -14,6 +17,7 @@ namespace vmech {
 namespace {
 
 constexpr double kFaithful = 100;  // w_v [1/s]: 3 Hz over it, squared, is 3.6 %
+constexpr double kMargin = 1.2;    // where the device bears it
 constexpr double kPhase = 0.7;     // w_d times the loop's delay [rad]
 constexpr double kDampingRatio = 0.4;
 
@@ -86,13 +90,13 @@ CouplingChoice ChooseCoupling(const KinematicTree& tree, const GraspFrame& grasp
   }
   const double fastest = kPhase / (0.5 * device.period + device.delay + smoothing);
   const double wanted = kFaithful * std::sqrt(choice.inertia_ratio);
-  const double rate = std::min(wanted, fastest);
+  const double rate = std::min(kMargin * wanted, fastest);
   const Vector6d D = HandleMasses(grasp, device);
   choice.coupling.stiffness = rate * rate * D;
   choice.coupling.damping = 2 * kDampingRatio * rate * D;
   choice.coupling.max_force = OrInfinite(device.linear.peak);
   choice.coupling.max_moment = OrInfinite(device.angular.peak);
-  choice.scale = std::pow(rate / wanted, 2);
+  choice.scale = std::min(1.0, std::pow(rate / wanted, 2));
   HandCoupling unlimited = choice.coupling;
   unlimited.max_force = unlimited.max_moment = OrInfinite(0);
   choice.weight = WeightAtHand(tree, grasp, q, unlimited);
@@ -103,10 +107,15 @@ CouplingChoice ChooseCoupling(const KinematicTree& tree, const GraspFrame& grasp
 
 double InertiaRatio(const KinematicTree& tree, const GraspFrame& grasp, const VectorXd& q,
                     const DeviceInfo& device) {
-  if (device.linear.mass == 0) return 0;
   TreeWorkspace<double> ws(tree);
   ForwardKinematics(tree, q.data(), &ws);
   const MatrixXd N = AllowedMotions(tree, &ws);
+  if (N.cols() == 0) {
+    throw std::invalid_argument(
+        fmt::format("'{}' has no freedom at this pose: there is nothing that a hand could move",
+                    tree.mechanism.name));
+  }
+  if (device.linear.mass == 0) return 0;
   MatrixXd J(6, tree.nv);
   PointJacobian(tree, ws, grasp.node, PoseInWorld(ws, grasp.node, grasp.X_BG).p, &J);
   // The handle's masses move the mechanism by D^1/2 J N (N'MN)^-1 N'J' D^1/2: eigenvalues 1/lambda.

@@ -23,12 +23,12 @@ struct CouplingChoice {
 /// (K/m_v)^1/2 of 100/s; a handle of mass m behind a hold of T/2, a delay t_d and a velocity filter
 /// of time constant t_f bears w_d = (K/m)^1/2 of 0.7 / (T/2 + t_d + t_f). So
 ///
-///   K = D w^2,  B = 2 z D w,  w = min(w_v lambda^1/2, w_d),  z = 0.4,  D the handle's masses,
+///   K = D w^2,  B = 2 z D w,  w = min(1.2 w_v lambda^1/2, w_d),  z = 0.4,  D the handle's masses,
 ///
 /// lambda the largest of N' M N s = lambda (J N)' D J N s, N the free motions. Where lambda asks
 /// for more than w_d, or the weight for more than half of the device's peak force, forces are
 /// scaled down. A device that states no masses gets a soft spring, watched by the passivity
-/// controller.
+/// controller. @throws std::invalid_argument if the mechanism has no freedom at q.
 CouplingChoice ChooseCoupling(const KinematicTree& tree, const GraspFrame& grasp, const VectorXd& q,
                               const DeviceInfo& device, double smoothing);
 

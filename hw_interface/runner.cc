@@ -16,6 +16,11 @@ std::unique_ptr<ArmTorques> MakeTorques(const RunnerOptions& options, const Devi
                                       info.angular.resolution);
 }
 
+std::unique_ptr<HandObserver> MakeObserver(const RunnerOptions& options, const DeviceInfo& info) {
+  if (options.observer.bandwidth == 0 || !HandObserver::Suits(info)) return nullptr;
+  return std::make_unique<HandObserver>(options.observer, info);
+}
+
 std::size_t RingSize(const RunnerOptions& options, std::uint64_t slots) {
   const auto keep = static_cast<std::uint64_t>(options.keep);
   return static_cast<std::size_t>(options.record ? std::max(slots, keep) : keep);
@@ -28,6 +33,7 @@ void RunnerOptions::Validate() const {
   CheckRange("RunnerOptions", "keep", keep, 1, 1e6);
   CheckRange("RunnerOptions", "command_life", command_life, 1, 1000);
   safety.Validate();
+  observer.Validate();
   posture.Validate();
   if (realtime) realtime->Validate();
 }
@@ -41,6 +47,7 @@ Runner::Runner(const RunnerOptions& options, Master* master, Tick* tick, LoopClo
       period_ns_(std::llround(period_ * 1e9)),
       safety_(options.safety, master->info()),
       torques_(MakeTorques(options, master->info())),
+      observer_(MakeObserver(options, master->info())),
       channels_(tick->ChannelNames()) {
   options.Validate();
   slots_ = static_cast<std::uint64_t>(std::llround(options.seconds / period_));
@@ -117,13 +124,21 @@ TickOutput Runner::StepTick(IoStatus io, TickRecord* record) noexcept VMECH_NONB
     last_sequence_ = state_.sequence;
     registered_ = true;
   }
-  if (fresh_) GraspOrLetGo();
+  ObservedHand observed;
+  if (fresh_) {
+    Observe();
+    GraspOrLetGo();
+  }
   TickInput input;
   input.held = holds_;
   input.X_WH = registration_.HandInWorld(state_.X_DH);
   input.fresh = fresh_;
   input.elapsed = static_cast<double>(state_.sequence - last_sequence_) * period_;
   input.state = &state_;
+  if (observer_) {
+    observed = registration_.Observed(observer_->X_DH(), observer_->V_DH());
+    input.observed = &observed;
+  }
   last_sequence_ = state_.sequence;
   out = tick_->Step(input, std::span<double>(record->channels.data(), channels_.size()));
   const Matrix3d R_DW = registration_.X_WD.R.transpose();
@@ -132,11 +147,20 @@ TickOutput Runner::StepTick(IoStatus io, TickRecord* record) noexcept VMECH_NONB
   return out;
 }
 
+void Runner::Observe() noexcept {
+  X_DH_ = state_.X_DH;
+  if (!observer_) return;
+  const auto periods = static_cast<int>(state_.sequence - last_sequence_);
+  observer_->Update(state_, safety_.WrenchAtWork(state_), periods);
+  X_DH_ = observer_->X_DH();
+}
+
 /// Puts the hand where the grasp frame is.
 void Runner::Register() noexcept {
   registration_ = GraspedAt(options_.R_WD, state_.X_DH, tick_->GraspFrame());
   tick_->Reset();
   if (torques_) torques_->Reset();
+  if (observer_) observer_->Reset();
   holds_ = !options_.gripper;
   summary_.grasps += holds_;
 }
@@ -148,7 +172,7 @@ void Runner::GraspOrLetGo() noexcept {
   safety_.Rebase();
   if (!closes) return;
   ++summary_.grasps;
-  if (!tick_->TakeHold(registration_.HandInWorld(state_.X_DH))) {
+  if (!tick_->TakeHold(registration_.HandInWorld(X_DH_))) {
     safety_.Restart();
     registration_ = GraspedAt(options_.R_WD, state_.X_DH, tick_->GraspFrame());
     tick_->Reset();

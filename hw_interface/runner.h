@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "vmech/hw_interface/arm_torques.h"
+#include "vmech/hw_interface/hand_observer.h"
 #include "vmech/hw_interface/histogram.h"
 #include "vmech/hw_interface/loop_clock.h"
 #include "vmech/hw_interface/nonblocking.h"
@@ -26,6 +27,7 @@ struct RunnerOptions {
   bool joint_torques = true;             ///< where the device takes them; else wrenches
   Matrix3d R_WD = Matrix3d::Identity();  ///< the device's axes in the mechanism's world
   SafetyOptions safety;
+  HandObserverOptions observer;  ///< where the device is an arm that states itself
   PostureOptions posture;
   std::optional<RealtimeOptions> realtime = RealtimeOptions{};  ///< none: an ordinary thread
 
@@ -98,6 +100,7 @@ class Runner {
   bool IsOver() const noexcept;
   void RunSlot(std::int64_t slot_ns, TickRecord* record) noexcept;
   IoStatus ReadMaster(std::int64_t slot_ns, MasterState* state) noexcept;
+  void Observe() noexcept;
   TickOutput StepTick(IoStatus io, TickRecord* record) noexcept VMECH_NONBLOCKING;
   void Register() noexcept;
   void GraspOrLetGo() noexcept;
@@ -115,8 +118,10 @@ class Runner {
   std::int64_t period_ns_;
   SafetyFilter safety_;
   std::unique_ptr<ArmTorques> torques_;
+  std::unique_ptr<HandObserver> observer_;
   Registration registration_;
   MasterState state_;
+  Posed X_DH_;  // of the hand, observed or as measured
   std::vector<std::string> channels_;
   std::vector<TickRecord> kept_;  // a ring
   RunSummary summary_;

@@ -136,7 +136,11 @@ void SafetyFilter::Observe(const SafetyInput& input) noexcept {
   if (has_pose_) {
     const Vector6d dX = HandError(X_last_, state.X_DH);
     const double elapsed = static_cast<double>(state.sequence - last_sequence_) * period_;
-    passivity_.Observe(WrenchAtWork(state), dX, elapsed, input.stored_energy);
+    // This tick's command is still to come. Somebody else carries what the soft start withholds.
+    const std::uint64_t command = CommandAtWork(state, counters_.ticks - 1);
+    Vector6d wrench = ExertedBy(command, state);
+    if (command > 0) wrench += withheld_[command % kMemory];
+    passivity_.Observe(wrench, dX, elapsed, input.stored_energy);
     constexpr double kSmoothing = 5e-3;  // [s]: single encoder steps do not trip
     smooth_V_ += std::min(1.0, elapsed / kSmoothing) * (dX / elapsed - smooth_V_);
   } else {
@@ -148,18 +152,22 @@ void SafetyFilter::Observe(const SafetyInput& input) noexcept {
   has_pose_ = true;
 }
 
-/// With what somebody else carries during the soft start.
 Vector6d SafetyFilter::WrenchAtWork(const MasterState& state) const noexcept {
+  return ExertedBy(CommandAtWork(state, counters_.ticks), state);
+}
+
+/// Its sequence; 0 if unknown. `latest` is that of the last command sent.
+std::uint64_t SafetyFilter::CommandAtWork(const MasterState& state,
+                                          std::uint64_t latest) const noexcept {
   const auto delay = static_cast<std::uint64_t>(std::llround(delay_ / period_));
-  const std::uint64_t latest = counters_.ticks - 1;  // this tick's is still to come
   const std::uint64_t at_work =
       state.valid & kSensesEcho ? state.command_echo : latest - std::min(latest, delay);
-  const bool known = at_work > 0 && at_work <= latest && latest - at_work < kMemory;
-  Vector6d wrench = Vector6d::Zero();
-  if (known) wrench = withheld_[at_work % kMemory];
-  if (state.valid & kSensesAppliedWrench) return wrench + state.applied_F_Ho_D;
-  if (known) wrench += sent_[at_work % kMemory];
-  return wrench;
+  return at_work <= latest && latest - at_work < kMemory ? at_work : 0;
+}
+
+Vector6d SafetyFilter::ExertedBy(std::uint64_t command, const MasterState& state) const noexcept {
+  if (state.valid & kSensesAppliedWrench) return state.applied_F_Ho_D;
+  return command > 0 ? sent_[command % kMemory] : Vector6d::Zero().eval();
 }
 
 ForceOff SafetyFilter::Trip() const noexcept {

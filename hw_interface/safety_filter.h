@@ -101,6 +101,10 @@ class SafetyFilter {
   /// Releases the latch; what caused it must be over, else the next Apply latches again.
   void Rearm() noexcept;
 
+  /// What the device exerted during the period before its latest sample: sensed, or told by its
+  /// echo, or else sent a delay ago. Before Apply of that sample.
+  Vector6d WrenchAtWork(const MasterState& state) const noexcept;
+
   ForceOff latched() const noexcept { return latched_; }
   const SafetyCounters& counters() const noexcept { return counters_; }
   /// Largest debt of energy [J]: the trip, and what the greatest force does at the greatest speed
@@ -112,7 +116,8 @@ class SafetyFilter {
 
   ForceOff Gate(const SafetyInput& input) noexcept;
   void Observe(const SafetyInput& input) noexcept;
-  Vector6d WrenchAtWork(const MasterState& state) const noexcept;
+  std::uint64_t CommandAtWork(const MasterState& state, std::uint64_t latest) const noexcept;
+  Vector6d ExertedBy(std::uint64_t command, const MasterState& state) const noexcept;
   ForceOff Trip() const noexcept;
   void Ramp(SafetyOutput* out) noexcept;
   void Damp(SafetyOutput* out) noexcept;

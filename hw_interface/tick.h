@@ -8,6 +8,12 @@
 
 namespace vmech {
 
+/// Pose and twist of the hand as an observer knows them (HandObserver).
+struct ObservedHand {
+  Posed X_WH;
+  Vector6d V_WH;  ///< [v; w] at Ho, axes of W
+};
+
 /// How the master's handle is laid over the mechanism's world W: D is placed by X_WD, and the
 /// hand's frame is the handle turned by R_HK, so that it can coincide with a grasp frame of any
 /// orientation.
@@ -22,6 +28,11 @@ struct Registration {
     X_WK.R *= R_HK;
     return X_WK;
   }
+  ObservedHand Observed(const Posed& X_DH, const Vector6d& V_DH) const noexcept {
+    ObservedHand hand{HandInWorld(X_DH), {}};
+    hand.V_WH << X_WD.R * V_DH.head<3>(), X_WD.R * V_DH.tail<3>();
+    return hand;
+  }
 };
 
 /// The registration that puts the hand where the grasp frame is, with the device's axes along R_WD:
@@ -29,11 +40,12 @@ struct Registration {
 Registration GraspedAt(const Matrix3d& R_WD, const Posed& X_DH, const Posed& X_WG) noexcept;
 
 struct TickInput {
-  Posed X_WH;          ///< the hand
+  Posed X_WH;          ///< the hand, as measured
   bool fresh = false;  ///< false: no new sample, the pose is that of the last tick
   double elapsed = 0;  ///< since the last fresh sample; a whole number of periods [s]
   bool held = true;    ///< false: the hand has let go, nothing is felt
   const MasterState* state = nullptr;
+  const ObservedHand* observed = nullptr;  ///< of a fresh sample; null: nobody observes it
 };
 
 enum class TickStatus : std::uint8_t {

@@ -150,7 +150,7 @@ int main(int argc, char** argv) {
     const double rate = 2 * std::numbers::pi * hertz;
     for (plot::Series& series : inertia.series) series.x.push_back(hertz);
     inertia.series[0].y.push_back(ratio);
-    inertia.series[1].y.push_back(1 / (1 - rate * rate / 1e4));
+    inertia.series[1].y.push_back(1 / (1 - rate * rate / (120 * 120)));  // K = m (120/s)^2
     if (hertz < 3) worst = std::max(worst, std::abs(ratio - 1));
   }
   notebook.Show(inertia);

@@ -5,6 +5,7 @@
 #include <complex>
 #include <numbers>
 
+#include "hw_interface/free_motion.h"
 #include "support/examples.h"
 #include "vmech/dynamics/hand_dynamics.h"
 #include "vmech/dynamics/newton_euler.h"
@@ -271,6 +272,12 @@ TEST(ChooseCoupling, ScalesDownWhatIsTooHeavyForTheDevice) {
   EXPECT_NEAR(choice.scale * choice.weight, 50, 1e-9);
   device.linear.peak = 0;
   EXPECT_EQ(ChooseCoupling(tree, grasp, q, device, kSmoothing).scale, 1);
+}
+
+TEST(ChooseCoupling, RefusesAStructure) {
+  const KinematicTree tree = BuildKinematicTree(Example("beam-on-three-supports"));
+  EXPECT_THROW(ChooseCoupling(tree, GraspFrameOf(tree, 0), ClosedStart(tree), {}, kSmoothing),
+               std::invalid_argument);
 }
 
 TEST(ChooseCoupling, SlowerDevicesGetASofterSpring) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <complex>
 #include <numbers>
 
 #include "hw_interface/free_motion.h"
@@ -195,6 +196,52 @@ TEST_P(EveryOneFreedomExample, FreeMotionFeelsNoConstraint) {
     EXPECT_LT(std::abs(way.dot(w)), kNothing * w.norm()) << k;
   }
   EXPECT_GT(most, 2);  // the constraints do pull
+}
+
+/// The part of the felt force that goes with what the true mechanism resists the motion with, both
+/// as they vary at the rate of the stroke.
+double FeltOverTrueInertia(Held* held, const FreeMotion& motion, double stroke, double hertz) {
+  const double rate = 2 * std::numbers::pi * hertz;
+  std::complex<double> felt = 0, expected = 0;
+  for (int k = 0; k < 4000; ++k) {
+    const double t = k * kPeriod, s = stroke * std::sin(rate * t);
+    const HandSample hand = motion.At(s);
+    const double force = -held->Step(hand.X_WH).F_Ho_W.dot(hand.V_WH) / held->scale;
+    if (k < 2000) continue;  // the rest is whole periods of every rate here
+    const std::complex<double> phase = std::polar(1.0, -rate * t);
+    felt += phase * force;
+    expected +=
+        phase * motion.InertiaForce(s, stroke * rate * std::cos(rate * t), -rate * rate * s);
+  }
+  return (felt / expected).real();
+}
+
+/// As far as the device can exert it: to half of its largest force.
+TEST_P(EveryOneFreedomExample, FeltInertiaIsTheTrueOneAlongLongStrokes) {
+  Mechanism mechanism = Example(GetParam());
+  const CoupledTickOptions options = CouplingFor(mechanism);
+  mechanism.gravity_W.setZero();
+  for (Joint& joint : mechanism.joints) {
+    std::fill(joint.passive.begin(), joint.passive.end(), Passive{});
+  }
+  const KinematicTree tree = BuildKinematicTree(mechanism);
+  const FreeMotion motion(tree, GraspFrameOf(tree, HandleOf(mechanism)), ClosedStart(tree), 0.055);
+  int felt = 0;
+  for (const double stroke : {0.01, 0.025, 0.05}) {
+    for (const double hertz : {0.5, 1.0, 2.0, 3.0}) {
+      const double rate = 2 * std::numbers::pi * hertz;
+      double most = 0;
+      for (const double s : {-stroke, stroke}) {
+        most = std::max(most, std::abs(motion.InertiaForce(s, 0, -rate * rate * s)));
+      }
+      if (options.scale * most > 0.5 * options.coupling.max_force) continue;
+      Held held(mechanism, options);
+      EXPECT_NEAR(FeltOverTrueInertia(&held, motion, stroke, hertz), 1, 0.05)
+          << stroke << " m at " << hertz << " Hz";
+      ++felt;
+    }
+  }
+  EXPECT_GE(felt, 8);
 }
 
 INSTANTIATE_TEST_SUITE_P(Examples, EveryOneFreedomExample,

@@ -137,9 +137,9 @@ TEST(HardPlaces, HandBeyondTheReachIsPulledWithNoMoreThanTheDeviceCan) {
   input.elapsed = kPeriod;
   const Vector3d outwards = input.X_WH.p.normalized();
   Vector3d before = Vector3d::Zero();
-  for (int k = 0; k < 4000; ++k) {
-    // A metre out and back again.
-    input.X_WH.p += (k < 2000 ? 0.5e-3 : -0.5e-3) * outwards;
+  for (int k = 0; k < 4500; ++k) {
+    // A metre out and back again, and still.
+    if (k < 4000) input.X_WH.p += (k < 2000 ? 0.5e-3 : -0.5e-3) * outwards;
     const TickOutput out = tick.Step(input, channels);
     ASSERT_EQ(out.status, TickStatus::kOk);
     ASSERT_LE(out.F_Ho_W.head<3>().norm(), session.choice.coupling.max_force * (1 + 1e-12));
