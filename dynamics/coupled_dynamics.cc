@@ -5,26 +5,26 @@
 
 #include "vmech/dynamics/newton_euler.h"
 #include "vmech/kinematics/forward_kinematics.h"
-#include "vmech/kinematics/loops.h"
 #include "vmech/kinematics/rotation_error.h"
+#include "vmech/solvers/small_ldlt.h"
 #include "vmech/solvers/stopping_rule.h"
 
 namespace vmech {
 namespace {
 
-/// W C'C against the rest of H: large enough for three solves to leave 1e-9.
+/// Of loops against the rest, see SaddleSystem.
 constexpr double kLoopWeight = 1e5;
-constexpr int kSolves = 3;
-/// Of the largest diagonal of H: holds a freedom without inertia.
+/// Of the largest diagonal of A: holds a freedom without inertia.
 constexpr double kDamping = 1e-14;
 /// A limit's stiffness over what it has to hold.
 constexpr double kHardLimit = 1e4;
 constexpr int kContactChanges = 3;
 constexpr int kClosingSteps = 5;
-constexpr double kClosed = 1e-12;      // [-] where the closing stops
+constexpr double kClosed = 1e-11;      // [-] where the closing stops
 constexpr double kStillClosed = 1e-9;  // [-] beyond, a step is not taken
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr double kFarthest = 0.1;  // [rad] or [m] that a coordinate moves in a step
+constexpr int kPaddedTwist = 8;    // rows of a twist in whole registers
 
 HandCoupling Checked(HandCoupling coupling, GraspKind kind) {
   for (int i = 0; i < 6; ++i) {
@@ -49,10 +49,6 @@ double SpringEnergy(const Vector3d& way, const Vector3d& pull, double most) {
   return whole * part * (2 - part);
 }
 
-bool MovesAlone(const TreeNode& node) {
-  return node.v >= 0 && node.motion != NodeMotion::kSpherical;
-}
-
 }  // namespace
 
 CoupledDynamics::CoupledDynamics(const KinematicTree& tree, const GraspFrame& grasp,
@@ -61,50 +57,63 @@ CoupledDynamics::CoupledDynamics(const KinematicTree& tree, const GraspFrame& gr
       coupling_(Checked(coupling, grasp.kind)),
       T_(step),
       pose_(tree, grasp),
-      row_scale_(LoopRowScale(tree)),
-      W_(VectorXd::Zero(tree.rows)),
+      system_(tree.nv, static_cast<int>(pose_.C().rows())),
       M_(MatrixXd::Zero(tree.nv, tree.nv)),
-      KJ_(pose_.J()),
-      WC_(pose_.C()),
-      H_(M_),
-      H0_(M_),
-      factor_(tree.nv),
-      bodies_(tree.nodes.size()),
+      A_(M_),
+      coupling_A_(M_),
+      limited_A_(M_),
+      rootKJ_(MatrixXd::Zero(kPaddedTwist, tree.nv)),
+      mass_memory_(tree),
       q_(q),
       v_(VectorXd::Zero(tree.nv)),
       next_q_(q),
       next_v_(v_),
       vdot_(v_),
+      momenta_(v_),
       bias_(v_),
-      rhs_(v_),
+      right_(v_),
+      limited_right_(v_),
       x_(v_),
-      mu_(W_),
-      d_(W_),
-      e2_(W_),
+      mu_(pose_.e2()),
+      d_(mu_),
+      opening_(mu_),
       applied_(tree.nodes.size()),
-      joints_(tree.mechanism.joints.size()),
-      contact_(tree.nv, 0) {
+      joints_(tree.mechanism.joints.size()) {
   CheckRange("CoupledDynamics", "step", step, 1e-7, 1);
   RefuseUnrenderedFriction(tree);
-  pose_.Set(q);
-  X_WH_ = pose_.X_WG();
+  ListFreedoms();
+  X_WH_ = pose_.Set(q);
+  TakeInertia();
+  TakeVelocities();
   BiasForces();
   BuildSystem();
   AddCoupling();
-  const double rows = (row_scale_.asDiagonal() * pose_.C()).squaredNorm();
-  if (rows > 0) W_ = kLoopWeight * H0_.trace() / rows * row_scale_.cwiseAbs2();
+  const double rows = pose_.C().squaredNorm();
+  if (rows > 0) system_.SetWeight(kLoopWeight * A_.trace() / rows);
+}
+
+void CoupledDynamics::ListFreedoms() {
+  for (const TreeNode& node : tree_.nodes) {
+    if (node.v < 0 || node.motion == NodeMotion::kSpherical) continue;
+    const Joint& joint = tree_.mechanism.joints[node.joint];
+    const Freedom freedom{node.q, node.v, joint.passive[node.freedom], joint.lower[node.freedom],
+                          joint.upper[node.freedom]};
+    if (IsPassive(freedom.passive) || freedom.lower > -kNoLimit || freedom.upper < kNoLimit) {
+      freedoms_.push_back(freedom);
+    }
+  }
 }
 
 void CoupledDynamics::Stop() noexcept {
   v_.setZero();
   lost_ = 0;
-  ForwardVelocities(tree_, v_.data(), &pose_.ws());
+  TakeVelocities();
 }
 
 void CoupledDynamics::TakeHold(const GraspFrame& grasp) noexcept {
   pose_.SetGrasp(grasp);
   pose_.Set(q_);
-  ForwardVelocities(tree_, v_.data(), &pose_.ws());
+  TakeVelocities();
   coupled_ = true;
 }
 
@@ -119,47 +128,42 @@ CoupledStatus CoupledDynamics::Step(const Posed& X_WH, const Vector6d& V_WH) noe
   if (!SolveWithLimits()) return CoupledStatus::kFailed;
   if (Slip()) {
     BuildSystem();
-    rhs_.noalias() += pose_.J().transpose() * w_;
+    pose_.AddForces(w_, &right_);
     if (!SolveWithLimits()) return CoupledStatus::kFailed;
   }
   FindWrenches();
   const CoupledStatus status = Move();
+  e1_ = HandError(pose_.X_WG(), X_WH);
   if (status == CoupledStatus::kMoved) KeepEnergy(before);
   return status;
 }
 
-/// h(q, v), and -T C' v, of which the next velocities must make up for.
+/// h(q, v), and -T C' v, of which the next velocities must make up for. Velocities are in ws.
 void CoupledDynamics::BiasForces() noexcept {
   TreeWorkspace<double>& ws = pose_.ws();
-  ForwardVelocities(tree_, v_.data(), &ws);
   ForwardAccelerations<double>(tree_, v_.data(), nullptr, &ws);
-  LoopAccelerationBias(tree_, &ws);
-  for (size_t l = 0; l < tree_.loops.size(); ++l) {
-    const Loop& loop = tree_.loops[l];
-    d_.segment(loop.row, loop.rows) = -T_ * ws.loops[l].bias.head(loop.rows);
-  }
+  pose_.TakeLoopBias(&d_);
+  d_ *= T_;
   RecursiveNewtonEuler<double>(tree_, tree_.mechanism.gravity_W, applied_.data(), &ws);
   GeneralisedForces(tree_, ws, bias_.data());
 }
 
-/// H0 v+ = rhs but for coupling, loops and limits.
+/// A v+ = right but for coupling, loops and limits.
 void CoupledDynamics::BuildSystem() noexcept {
-  CompositeMassMatrix(tree_, pose_.ws(), &bodies_, &M_);
-  H0_ = M_ / T_;
-  H0_.diagonal().array() += kDamping * H0_.diagonal().maxCoeff();
-  rhs_ = -bias_;
-  x_ = v_ / T_;
-  rhs_.noalias() += M_ * x_;
+  const double rate = 1 / T_;
+  A_ = rate * M_;
+  right_ = rate * momenta_ - bias_;
+  A_.diagonal().array() += kDamping * A_.diagonal().maxCoeff();
   AddPassive();
 }
 
 void CoupledDynamics::AddCoupling() noexcept {
   const Vector6d gain = coupling_.damping + T_ * coupling_.stiffness;
-  const Vector6d pull =
-      coupling_.stiffness.cwiseProduct(e1_) + coupling_.damping.cwiseProduct(V_WH_);
-  KJ_ = gain.asDiagonal() * pose_.J();
-  H0_.noalias() += pose_.J().transpose() * KJ_;
-  rhs_.noalias() += pose_.J().transpose() * pull;
+  rootKJ_.topRows<6>() = gain.cwiseSqrt().asDiagonal() * pose_.J();
+  system_.Gram(rootKJ_, &coupling_A_);
+  A_ += coupling_A_;
+  pose_.AddForces(coupling_.stiffness.cwiseProduct(e1_) + coupling_.damping.cwiseProduct(V_WH_),
+                  &right_);
 }
 
 /// The coupling's wrench at the end of the step. True if it is larger than it may be; then w_ is
@@ -169,7 +173,7 @@ bool CoupledDynamics::Slip() noexcept {
     w_.setZero();
     return slipping_ = false;
   }
-  const Vector6d V_WG = pose_.J() * next_v_;
+  const Vector6d V_WG = pose_.Twist(next_v_);
   w_ = coupling_.stiffness.cwiseProduct(e1_ - T_ * V_WG) +
        coupling_.damping.cwiseProduct(V_WH_ - V_WG);
   const double force = w_.head<3>().norm(), moment = w_.tail<3>().norm();
@@ -181,7 +185,7 @@ bool CoupledDynamics::Slip() noexcept {
 
 /// Velocities with the joints' limits.
 bool CoupledDynamics::SolveWithLimits() noexcept {
-  std::fill(contact_.begin(), contact_.end(), 0);
+  for (Freedom& freedom : freedoms_) freedom.contact = 0;
   for (int i = 0; i < kContactChanges; ++i) {
     if (!SolveVelocity()) return false;
     if (!ChangeContacts()) break;
@@ -191,55 +195,34 @@ bool CoupledDynamics::SolveWithLimits() noexcept {
 
 /// Springs and friction of the tree's joints; dry friction as the damper that it is at this speed.
 void CoupledDynamics::AddPassive() noexcept {
-  for (const TreeNode& node : tree_.nodes) {
-    if (!MovesAlone(node)) continue;
-    const Passive& passive = tree_.mechanism.joints[node.joint].passive[node.freedom];
-    const double dry = passive.coulomb / std::max(std::abs(v_[node.v]), kSlowSliding);
-    H0_(node.v, node.v) += T_ * passive.stiffness + passive.viscous + dry;
-    rhs_[node.v] -= passive.stiffness * (q_[node.q] - passive.rest);
+  for (const auto& [q, v, passive, lower, upper, contact] : freedoms_) {
+    const double dry = passive.coulomb / std::max(std::abs(v_[v]), kSlowSliding);
+    A_(v, v) += T_ * passive.stiffness + passive.viscous + dry;
+    right_[v] -= passive.stiffness * (q_[q] - passive.rest);
   }
 }
 
-/// (H0 + limits + C'WC) v+ = rhs + C'(W d - mu), mu += W (C v+ - d).
+/// (A + limits) v+ + C' mu = right, C v+ = d.
 bool CoupledDynamics::SolveVelocity() noexcept {
-  const MatrixXd& C = pose_.C();
-  H_ = H0_;
-  vdot_ = rhs_;
-  for (const TreeNode& node : tree_.nodes) {
-    if (!MovesAlone(node) || contact_[node.v] == 0) continue;
-    const Joint& joint = tree_.mechanism.joints[node.joint];
-    const double limit =
-        contact_[node.v] > 0 ? joint.upper[node.freedom] : joint.lower[node.freedom];
-    const double hold = kHardLimit * H0_(node.v, node.v);
-    H_(node.v, node.v) += hold;
-    vdot_[node.v] += hold * (limit - q_[node.q]) / T_;
+  limited_A_ = A_;
+  limited_right_ = right_;
+  for (const auto& [q, v, passive, lower, upper, contact] : freedoms_) {
+    if (contact == 0) continue;
+    const double hold = kHardLimit * A_(v, v);
+    limited_A_(v, v) += hold;
+    limited_right_[v] += hold * ((contact > 0 ? upper : lower) - q_[q]) / T_;
   }
-  WC_ = W_.asDiagonal() * C;
-  H_.noalias() += C.transpose() * WC_;
-  factor_.compute(H_);
-  if (factor_.info() != Eigen::Success) return false;
-  vdot_.noalias() += WC_.transpose() * d_;
-  mu_.setZero();
-  for (int i = 0; i < kSolves; ++i) {
-    next_v_ = vdot_;
-    next_v_.noalias() -= C.transpose() * mu_;
-    factor_.solveInPlace(next_v_);
-    e2_.noalias() = C * next_v_;
-    mu_ += W_.cwiseProduct(e2_ - d_);
-  }
+  if (!system_.Factor(limited_A_, pose_.C())) return false;
+  system_.Solve(pose_.C(), limited_right_, d_, &next_v_);
   return next_v_.allFinite();
 }
 
 /// Limits that the step would pass begin to hold, limits that would pull let go. True if any did.
 bool CoupledDynamics::ChangeContacts() noexcept {
   bool changed = false;
-  for (const TreeNode& node : tree_.nodes) {
-    if (!MovesAlone(node)) continue;
-    const Joint& joint = tree_.mechanism.joints[node.joint];
-    int& contact = contact_[node.v];
-    const double end = q_[node.q] + T_ * next_v_[node.v];
-    const double above = end - joint.upper[node.freedom];
-    const double below = joint.lower[node.freedom] - end;
+  for (auto& [q, v, passive, lower, upper, contact] : freedoms_) {
+    const double end = q_[q] + T_ * next_v_[v];
+    const double above = end - upper, below = lower - end;
     // A limit that holds is passed a little: it pulls where it is not.
     if (contact != 0) {
       if ((contact > 0 ? above : below) < 0) {
@@ -255,7 +238,8 @@ bool CoupledDynamics::ChangeContacts() noexcept {
 }
 
 bool CoupledDynamics::at_limit() const noexcept {
-  return std::any_of(contact_.begin(), contact_.end(), [](int side) { return side != 0; });
+  return std::any_of(freedoms_.begin(), freedoms_.end(),
+                     [](const Freedom& freedom) { return freedom.contact != 0; });
 }
 
 /// The joints' wrenches, with the accelerations of the step.
@@ -264,47 +248,63 @@ void CoupledDynamics::FindWrenches() noexcept {
   vdot_ = (next_v_ - v_) / T_;
   ForwardAccelerations<double>(tree_, v_.data(), vdot_.data(), &ws);
   RecursiveNewtonEuler<double>(tree_, tree_.mechanism.gravity_W, applied_.data(), &ws);
-  mu_ = -mu_;
+  mu_ = -system_.mu();
   pose_.LoadJoints(w_, mu_, &joints_);
 }
 
 CoupledStatus CoupledDynamics::Move() noexcept {
   const double farthest = T_ * next_v_.lpNorm<Eigen::Infinity>();
   if (farthest > kFarthest) next_v_ *= kFarthest / farthest;
-  x_ = T_ * next_v_;
-  next_q_ = q_;
-  MoveCoordinates(tree_, x_.data(), next_q_.data());
   const bool closed = Close();
   if (closed) {
     q_ = next_q_;
     v_ = next_v_;
+    pose_.SetJacobians();
   } else {
     v_.setZero();
+    pose_.Set(q_);
   }
-  pose_.Set(q_);
-  ForwardVelocities(tree_, v_.data(), &pose_.ws());
+  TakeInertia();
+  TakeVelocities();
   if (!w_.allFinite()) return CoupledStatus::kFailed;
   return closed ? CoupledStatus::kMoved : CoupledStatus::kStopped;
 }
 
-/// Chord steps H dq = C'W e2 from where the step leads.
+/// Where the step leads, q+ = q (+) T v+, and from there chord steps C dq = e2. The first goes
+/// along with the step, towards the errors that curvature will have left: e2 + T^2/2 C' v.
 bool CoupledDynamics::Close() noexcept {
+  opening_ = pose_.e2() - (0.5 * T_) * d_;
+  system_.Approach(pose_.C(), opening_, &x_);
+  x_ += T_ * next_v_;
+  next_q_ = q_;
   for (int i = 0;; ++i) {
-    pose_.SetLoops(next_q_);
-    for (size_t l = 0; l < tree_.loops.size(); ++l) {
-      const Loop& loop = tree_.loops[l];
-      e2_.segment(loop.row, loop.rows) = pose_.ws().loops[l].e2.head(loop.rows);
-    }
-    closure_ = 0;
-    for (int r = 0; r < tree_.rows; ++r) {
-      closure_ = std::max(closure_, std::abs(row_scale_[r] * e2_[r]));
-    }
-    if (i == kClosingSteps || closure_ <= kClosed || !std::isfinite(closure_)) break;
-    x_.noalias() = WC_.transpose() * e2_;
-    factor_.solveInPlace(x_);
     MoveCoordinates(tree_, x_.data(), next_q_.data());
+    pose_.SetLoops(next_q_);
+    closure_ = pose_.e2().lpNorm<Eigen::Infinity>();
+    if (i == kClosingSteps || closure_ <= kClosed || !std::isfinite(closure_)) break;
+    system_.Approach(pose_.C(), pose_.e2(), &x_);
   }
   return closure_ <= kStillClosed;
+}
+
+/// Inertia, and the energies without the coupling's.
+void CoupledDynamics::TakeInertia() noexcept {
+  CompositeMassMatrix(tree_, pose_.ws(), &mass_memory_, &M_);
+  potential_ = 0;
+  for (size_t i = 0; i < tree_.nodes.size(); ++i) {
+    if (tree_.nodes[i].parent >= 0) continue;
+    potential_ -= tree_.mechanism.gravity_W.dot(mass_memory_.bodies[i].moment);
+  }
+  for (const auto& [q, v, passive, lower, upper, contact] : freedoms_) {
+    const double length = q_[q] - passive.rest;
+    potential_ += 0.5 * passive.stiffness * length * length;
+  }
+}
+
+void CoupledDynamics::TakeVelocities() noexcept {
+  ForwardVelocities(tree_, v_.data(), &pose_.ws());
+  for (int i = 0; i < tree_.nv; ++i) momenta_[i] = Dot(&M_(0, i), v_.data(), tree_.nv);
+  kinetic_ = 0.5 * Dot(momenta_.data(), v_.data(), tree_.nv);
 }
 
 /// What the step has gained beyond the damper's work at most gives back what steps have lost; the
@@ -313,35 +313,19 @@ void CoupledDynamics::KeepEnergy(double before) noexcept {
   constexpr double kMemory = 0.05;  // of the kinetic energy that losses are remembered for
   const Vector6d V = V_WG();
   const double dragged = T_ * coupling_.damping.cwiseProduct(V_WH_ - V).dot(V);
-  const double kinetic = pose_.KineticEnergy();
-  const double gained =
-      kinetic + PotentialEnergy() - before - (coupled_ ? std::max(0.0, dragged) : 0);
-  lost_ = std::min(lost_ - gained, kMemory * kinetic);
-  if (lost_ >= 0 || kinetic == 0) return;
-  v_ *= std::sqrt(std::max(0.0, 1 + lost_ / kinetic));
+  const double gained = Energy() - before - (coupled_ ? std::max(0.0, dragged) : 0);
+  lost_ = std::min(lost_ - gained, kMemory * kinetic_);
+  if (lost_ >= 0 || kinetic_ == 0) return;
+  v_ *= std::sqrt(std::max(0.0, 1 + lost_ / kinetic_));
   lost_ = 0;
-  ForwardVelocities(tree_, v_.data(), &pose_.ws());
+  TakeVelocities();
 }
 
-double CoupledDynamics::Energy() const noexcept {
-  return pose_.KineticEnergy() + PotentialEnergy();
-}
-
-double CoupledDynamics::PotentialEnergy() const noexcept {
-  double energy = pose_.WeightEnergy();
-  if (coupled_) {
-    const Vector6d e1 = HandError(pose_.X_WG(), X_WH_);
-    const Vector6d pull = coupling_.stiffness.cwiseProduct(e1);
-    energy += SpringEnergy(e1.head<3>(), pull.head<3>(), coupling_.max_force) +
-              SpringEnergy(e1.tail<3>(), pull.tail<3>(), coupling_.max_moment);
-  }
-  for (const TreeNode& node : tree_.nodes) {
-    if (!MovesAlone(node)) continue;
-    const Passive& passive = tree_.mechanism.joints[node.joint].passive[node.freedom];
-    const double length = q_[node.q] - passive.rest;
-    energy += 0.5 * passive.stiffness * length * length;
-  }
-  return energy;
+double CoupledDynamics::CouplingEnergy() const noexcept {
+  if (!coupled_) return 0;
+  const Vector6d pull = coupling_.stiffness.cwiseProduct(e1_);
+  return SpringEnergy(e1_.head<3>(), pull.head<3>(), coupling_.max_force) +
+         SpringEnergy(e1_.tail<3>(), pull.tail<3>(), coupling_.max_moment);
 }
 
 }  // namespace vmech

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <limits>
 #include <vector>
 
 #include "vmech/dynamics/composite_inertia.h"
 #include "vmech/dynamics/held_pose.h"
+#include "vmech/solvers/saddle_system.h"
 
 namespace vmech {
 
@@ -38,8 +38,8 @@ enum class CoupledStatus {
 /// that is (M/T + J'(B + T K) J + ..) v+ = M v/T - h + J'(K e1 + B V_H) - C' mu: what the hand
 /// feels, -w, is the reaction of a mass that really moves. Implicit steps only lose energy; what
 /// centrifugal forces, taken at the start of the step, add beyond what was lost before is taken out
-/// of the velocities. The multipliers come from the method of multipliers with one factorisation,
-/// as in HandDynamics; redundant loop equations need no care. No allocation after construction.
+/// of the velocities. Velocities and multipliers are those of a SaddleSystem; redundant loop
+/// equations need no care. No allocation after construction.
 class CoupledDynamics {
  public:
   /// Keeps a reference to the tree. Rotational rows of the coupling do not count for a point grasp.
@@ -61,19 +61,30 @@ class CoupledDynamics {
   const VectorXd& q() const noexcept { return q_; }
   const VectorXd& v() const noexcept { return v_; }
   const Posed& X_WG() const noexcept { return pose_.X_WG(); }
+  /// HandError of the hand [6; m, rad].
+  const Vector6d& e1() const noexcept { return e1_; }
   const HeldPose& pose() const noexcept { return pose_; }
-  Vector6d V_WG() const noexcept { return pose_.J() * v_; }
+  Vector6d V_WG() const noexcept { return pose_.Twist(v_); }
   /// Hand on mechanism during the step, at Go, world axes: what the coupling pulls.
   const Vector6d& w() const noexcept { return w_; }
   /// Every joint's wrench during the step, as HandDynamics::joints.
   const std::vector<Wrenchd>& joints() const noexcept { return joints_; }
   /// Kinetic energy, weight, springs of joints and coupling [J].
-  double Energy() const noexcept;
+  double Energy() const noexcept { return kinetic_ + potential_ + CouplingEnergy(); }
   double closure() const noexcept { return closure_; }  ///< largest loop error [-], lengths over L
   bool at_limit() const noexcept;                       ///< a joint stands at a limit
   bool slipping() const noexcept { return slipping_; }  ///< the coupling is at its largest wrench
 
  private:
+  /// A coordinate of its own with a spring, friction or limits.
+  struct Freedom {
+    int q, v;
+    Passive passive;
+    double lower, upper;
+    int contact = 0;  // -1 at the lower limit, 1 at the upper
+  };
+
+  void ListFreedoms();
   void BiasForces() noexcept;
   void BuildSystem() noexcept;
   void AddCoupling() noexcept;
@@ -84,25 +95,28 @@ class CoupledDynamics {
   bool ChangeContacts() noexcept;
   void FindWrenches() noexcept;
   CoupledStatus Move() noexcept;
-  double PotentialEnergy() const noexcept;
-  void KeepEnergy(double before) noexcept;
   bool Close() noexcept;
+  void TakeInertia() noexcept;
+  void TakeVelocities() noexcept;
+  double CouplingEnergy() const noexcept;
+  void KeepEnergy(double before) noexcept;
 
   const KinematicTree& tree_;
   HandCoupling coupling_;
   double T_;
   HeldPose pose_;
-  VectorXd row_scale_, W_;  // per loop equation
-  MatrixXd M_, KJ_, WC_, H_, H0_;
-  Eigen::LLT<MatrixXd> factor_;
-  std::vector<CompositeInertia> bodies_;
-  VectorXd q_, v_, next_q_, next_v_, vdot_, bias_, rhs_, x_, mu_, d_, e2_;
+  SaddleSystem system_;
+  MatrixXd M_, A_, coupling_A_, limited_A_, rootKJ_;
+  MassMatrixMemory mass_memory_;
+  VectorXd q_, v_, next_q_, next_v_, vdot_, momenta_, bias_, right_, limited_right_, x_, mu_, d_,
+      opening_;
   std::vector<Wrenchd> applied_, joints_;
-  std::vector<int> contact_;  // per velocity: -1 at the lower limit, 1 at the upper, 0 free
+  std::vector<Freedom> freedoms_;
   Posed X_WH_;
   Vector6d e1_ = Vector6d::Zero(), V_WH_ = Vector6d::Zero(), w_ = Vector6d::Zero();
   double closure_ = 0;
-  double lost_ = 0;  // energy that steps may give back [J]
+  double kinetic_ = 0, potential_ = 0;  // without the coupling's [J]
+  double lost_ = 0;                     // energy that steps may give back [J]
   bool slipping_ = false;
   bool coupled_ = true;
 };

@@ -17,11 +17,12 @@
 namespace vmech {
 namespace {
 
-/// W against K: large enough for three solves to leave 1e-9, small enough for the digits of K.
+/// Of loops against K, see SaddleSystem.
 constexpr double kLoopWeight = 1e5;
-constexpr int kSolves = 3;
-/// Of the largest eigenvalue: holds what neither hand nor loops move, at a dead centre.
-constexpr double kDamping = 1e-16;
+/// Of the trace: holds what neither hand nor loops move, at a dead centre.
+constexpr double kDamping = 1e-11;
+
+constexpr int kPaddedTwist = 8;  // rows of a twist in whole registers
 
 Vector6d RowsThatCount(Vector6d K, GraspKind kind) {
   if (kind == GraspKind::kPoint) K.tail<3>().setZero();
@@ -41,39 +42,36 @@ HandDynamics::HandDynamics(const KinematicTree& tree, const GraspFrame& grasp,
     : tree_(tree),
       grasp_(grasp),
       K_(RowsThatCount(stiffness, grasp.kind)),
-      W_(VectorXd::Zero(tree.rows)),
+      root_K_(K_.cwiseSqrt()),
       pose_(tree, grasp),
-      KJ_(pose_.J()),
-      WC_(pose_.C()),
-      H_(MatrixXd::Zero(tree.nv, tree.nv)),
-      factor_(tree.nv),
+      system_(tree.nv, static_cast<int>(pose_.C().rows())),
+      rootKJ_(MatrixXd::Zero(kPaddedTwist, tree.nv)),
+      A_(MatrixXd::Zero(tree.nv, tree.nv)),
       q_(q),
       v_(VectorXd::Zero(tree.nv)),
       felt_v_(v_),
       vdot_(v_),
       tau_(v_),
       x_(v_),
-      mu_(W_),
-      d_(W_),
-      Cx_(W_),
-      none_(W_),
+      right_(v_),
+      d_(pose_.e2()),
+      none_(d_),
       applied_(tree.nodes.size()),
       joints_(tree.mechanism.joints.size()),
       spring_length_(tree.nv, 0.0) {
   RefuseUnrenderedFriction(tree);
   const double k = MeanStiffness(K_, tree.length);
   if (!(k > 0)) throw std::invalid_argument("hand: a stiffness above zero is needed");
-  const VectorXd scale = LoopRowScale(tree);
-  W_ = kLoopWeight * k * tree.length * tree.length * scale.cwiseAbs2();
+  system_.SetWeight(kLoopWeight * k * tree.length * tree.length);
   SetPose(q);
   RefuseIdleFreedoms();
 }
 
 /// Every velocity must show at the hand or in a loop.
 void HandDynamics::RefuseIdleFreedoms() const {
-  MatrixXd A(6 + tree_.rows, tree_.nv);
-  const Vector6d root = K_.cwiseSqrt() / std::sqrt(MeanStiffness(K_, tree_.length));
-  A << root.asDiagonal() * pose_.J() / tree_.length, LoopRowScale(tree_).asDiagonal() * pose_.C();
+  MatrixXd A(6 + pose_.C().rows(), tree_.nv);
+  const Vector6d root = root_K_ / std::sqrt(MeanStiffness(K_, tree_.length));
+  A << root.asDiagonal() * pose_.J() / tree_.length, pose_.C();
   constexpr double kMoved = 1e-6;
   const NullSpace free = FindNullSpace(A, kMoved);
   if (free.basis.cols() == 0) return;
@@ -93,18 +91,15 @@ bool HandDynamics::Evaluate(const Vector6d& V_WG, const Vector6d& A_WG, double i
   felt_v_ = std::sqrt(inertia) * v_;
   ForwardVelocities(tree_, felt_v_.data(), &ws);
   ForwardAccelerations<double>(tree_, felt_v_.data(), nullptr, &ws);
-  LoopAccelerationBias(tree_, &ws);
-  for (size_t l = 0; l < tree_.loops.size(); ++l) {
-    const Loop& loop = tree_.loops[l];
-    d_.segment(loop.row, loop.rows) = -ws.loops[l].bias.head(loop.rows);
-  }
+  pose_.TakeLoopBias(&d_);
   SolveMotion(inertia * A_WG - PointAcceleration(ws, grasp_.node, pose_.X_WG().p), d_, &vdot_);
   ForwardAccelerations<double>(tree_, felt_v_.data(), vdot_.data(), &ws);
   RecursiveNewtonEuler<double>(tree_, tree_.mechanism.gravity_W, applied_.data(), &ws);
   GeneralisedForces(tree_, ws, tau_.data());
   PassiveForces();
-  SolveWrenches();
-  pose_.LoadJoints(w_d_, mu_, &joints_);
+  system_.Solve(pose_.C(), tau_, none_, &x_);
+  w_d_ = K_.cwiseProduct(pose_.Twist(x_));
+  pose_.LoadJoints(w_d_, system_.mu(), &joints_);
   return w_d_.allFinite();
 }
 
@@ -114,39 +109,17 @@ const Posed& HandDynamics::SetPose(const VectorXd& q) noexcept {
 }
 
 bool HandDynamics::Factor() noexcept {
-  KJ_ = K_.asDiagonal() * pose_.J();
-  WC_ = W_.asDiagonal() * pose_.C();
-  H_.noalias() = pose_.J().transpose() * KJ_;
-  H_.noalias() += pose_.C().transpose() * WC_;
-  H_.diagonal().array() += kDamping * H_.trace();
-  factor_.compute(H_);
-  return factor_.info() == Eigen::Success;
+  rootKJ_.topRows<6>() = root_K_.asDiagonal() * pose_.J();
+  system_.Gram(rootKJ_, &A_);
+  A_.diagonal().array() += kDamping * A_.trace();
+  return system_.Factor(A_, pose_.C());
 }
 
 /// min |J x - b|_K subject to C x = d.
 void HandDynamics::SolveMotion(const Vector6d& b, const VectorXd& d, VectorXd* x) noexcept {
-  mu_.setZero();
-  for (int i = 0; i < kSolves; ++i) {
-    x->noalias() = KJ_.transpose() * b;
-    x->noalias() += WC_.transpose() * d;
-    x->noalias() -= pose_.C().transpose() * mu_;
-    factor_.solveInPlace(*x);
-    Cx_.noalias() = pose_.C() * *x;
-    mu_ += W_.cwiseProduct(Cx_ - d);
-  }
-}
-
-/// tau_ = J' w_d + C' mu with w_d = K J x along the free motion.
-void HandDynamics::SolveWrenches() noexcept {
-  mu_.setZero();
-  for (int i = 0; i < kSolves; ++i) {
-    x_ = tau_;
-    x_.noalias() -= pose_.C().transpose() * mu_;
-    factor_.solveInPlace(x_);
-    Cx_.noalias() = pose_.C() * x_;
-    mu_ += W_.cwiseProduct(Cx_);
-  }
-  w_d_.noalias() = KJ_ * x_;
+  right_.setZero();
+  pose_.AddForces(K_.cwiseProduct(b), &right_);
+  system_.Solve(pose_.C(), right_, d, x);
 }
 
 /// Takes from tau_ what springs, dampers and dry friction supply.

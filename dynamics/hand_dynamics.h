@@ -1,24 +1,22 @@
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <vector>
 
 #include "vmech/dynamics/held_pose.h"
+#include "vmech/solvers/saddle_system.h"
 
 namespace vmech {
 
 /// Dynamics of a mechanism that a hand moves, for the kHz path: what the hand must exert, and what
 /// every joint carries, at one closed pose, from one factorisation and without a null space or a
-/// rank decision. With the grasp's Jacobian J, the loops' C, W their weights and
+/// rank decision. With the grasp's Jacobian J and the loops' C, a quantity x of the free motion
+/// that fits b, min |J x - b|_K subject to C x = d, is that of a SaddleSystem
 ///
-///   H = J'KJ + C'WC,
+///   J'K J x + C' mu = c,   C x = d
 ///
-/// a quantity x of the free motion that fits b, min |J x - b|_K subject to C x = d, is found by the
-/// method of multipliers: H x = J'K b + C'(W d - mu), mu += W (C x - d). Three solves leave 1e-9.
-///
-///   velocities     b = V_G,           d = 0
-///   accelerations  b = A_G - J' v,    d = -C' v
-///   wrenches       H x = tau - C'mu,  mu += W C x,   w_d = K J x          (paper eq. 9, 13)
+///   velocities     c = J'K V_G,           d = 0
+///   accelerations  c = J'K (A_G - J' v),  d = -C' v
+///   wrenches       c = tau,               d = 0,  w_d = K J x          (paper eq. 9, 13)
 ///
 /// tau = M q'' + h less springs and dampers of the joints in the tree. w_d is the smallest wrench,
 /// in the metric K, that moves the mechanism so; mu, the wrenches of the cut joints, the smallest
@@ -56,18 +54,16 @@ class HandDynamics {
  private:
   bool Factor() noexcept;
   void SolveMotion(const Vector6d& b, const VectorXd& d, VectorXd* x) noexcept;
-  void SolveWrenches() noexcept;
   void PassiveForces() noexcept;
   void RefuseIdleFreedoms() const;
 
   const KinematicTree& tree_;
   GraspFrame grasp_;
-  Vector6d K_;
-  VectorXd W_;  // per loop equation
+  Vector6d K_, root_K_;
   HeldPose pose_;
-  MatrixXd KJ_, WC_, H_;
-  Eigen::LLT<MatrixXd> factor_;
-  VectorXd q_, v_, felt_v_, vdot_, tau_, x_, mu_, d_, Cx_, none_;
+  SaddleSystem system_;
+  MatrixXd rootKJ_, A_;
+  VectorXd q_, v_, felt_v_, vdot_, tau_, x_, right_, d_, none_;
   std::vector<Wrenchd> applied_, joints_;
   std::vector<double> spring_length_;  // per velocity: q - rest
   Vector6d w_d_ = Vector6d::Zero();

@@ -11,7 +11,7 @@ namespace vmech {
 namespace {
 
 MatrixXd GraspMotions(const LoadModel& model, const TreeWorkspace<double>& ws, const MatrixXd& N) {
-  MatrixXd J(6, model.tree.nv);
+  Matrix6Xd J(6, model.tree.nv);
   PointJacobian(model.tree, ws, GraspNode(model), GraspPose(model, ws).p, &J);
   return J * N;
 }

@@ -7,38 +7,79 @@
 
 #include "vmech/dynamics/reactions.h"
 #include "vmech/kinematics/forward_kinematics.h"
-#include "vmech/kinematics/jacobian.h"
 #include "vmech/kinematics/loops.h"
 
 namespace vmech {
 
+namespace {
+
+/// A multiple of four: whole registers.
+int Padded(int rows) {
+  return (rows + 3) / 4 * 4;
+}
+
+}  // namespace
+
 HeldPose::HeldPose(const KinematicTree& tree, const GraspFrame& grasp)
     : tree_(tree),
       grasp_(grasp),
+      row_scale_(LoopRowScale(tree)),
       ws_(tree),
-      J_(MatrixXd::Zero(6, tree.nv)),
-      C_(MatrixXd::Zero(tree.rows, tree.nv)) {}
+      J_(Matrix6Xd::Zero(6, tree.nv)),
+      C_(MatrixXd::Zero(Padded(tree.rows), tree.nv)),
+      e2_(VectorXd::Zero(C_.rows())),
+      mu_(VectorXd::Zero(tree.rows)) {}
+
+const Posed& HeldPose::Set(const VectorXd& q) noexcept {
+  SetLoops(q);
+  return SetJacobians();
+}
 
 void HeldPose::SetLoops(const VectorXd& q) noexcept {
   ForwardKinematics(tree_, q.data(), &ws_);
   LoopErrors(tree_, &ws_);
-}
-
-const Posed& HeldPose::Set(const VectorXd& q) noexcept {
-  SetLoops(q);
-  LoopJacobian(tree_, &ws_);
-  X_WG_ = PoseInWorld(ws_, grasp_.node, grasp_.X_BG);
-  PointJacobian(tree_, ws_, grasp_.node, X_WG_.p, &J_);
-  C_.setZero();
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
     const Loop& loop = tree_.loops[l];
-    const Vector6d* column = &ws_.loop_columns[ws_.first_column[l]];
+    for (int i = loop.row, k = 0; k < loop.rows; ++i, ++k) {
+      e2_[i] = row_scale_[i] * ws_.loops[l].e2[k];
+    }
+  }
+}
+
+const Posed& HeldPose::SetJacobians() noexcept {
+  X_WG_ = PoseInWorld(ws_, grasp_.node, grasp_.X_BG);
+  PointJacobian(tree_, ws_, grasp_.node, X_WG_.p, &J_);
+  LoopJacobian(tree_, &ws_);
+  const Vector6d* column = ws_.loop_columns.data();
+  for (const Loop& loop : tree_.loops) {
     for (const LoopColumn& c : loop.columns) {
-      C_.col(c.v).segment(loop.row, loop.rows) = column->head(loop.rows);
+      for (int i = loop.row, k = 0; k < loop.rows; ++i, ++k) {
+        C_(i, c.v) = row_scale_[i] * (*column)[k];
+      }
       ++column;
     }
   }
   return X_WG_;
+}
+
+Vector6d HeldPose::Twist(const VectorXd& v) const noexcept {
+  Vector6d V = Vector6d::Zero();
+  for (int i = 0; i < tree_.nv; ++i) V += v[i] * J_.col(i);
+  return V;
+}
+
+void HeldPose::AddForces(const Vector6d& w_Go, VectorXd* tau) const noexcept {
+  for (int i = 0; i < tree_.nv; ++i) (*tau)[i] += J_.col(i).dot(w_Go);
+}
+
+void HeldPose::TakeLoopBias(VectorXd* d) noexcept {
+  LoopAccelerationBias(tree_, &ws_);
+  for (size_t l = 0; l < tree_.loops.size(); ++l) {
+    const Loop& loop = tree_.loops[l];
+    for (int i = loop.row, k = 0; k < loop.rows; ++i, ++k) {
+      (*d)[i] = -row_scale_[i] * ws_.loops[l].bias[k];
+    }
+  }
 }
 
 void HeldPose::LoadJoints(const Vector6d& w_hand, const VectorXd& mu,
@@ -48,7 +89,8 @@ void HeldPose::LoadJoints(const Vector6d& w_hand, const VectorXd& mu,
     NodeState<double>& node = ws_.nodes[n];
     node.F_Bo -= hand.ShiftedBy(X_WG_.p - node.X_WB.p);
   }
-  AddMultiplierWrenches(tree_, mu.data(), &ws_);
+  for (int i = 0; i < tree_.rows; ++i) mu_[i] = row_scale_[i] * mu[i];
+  AddMultiplierWrenches(tree_, mu_.data(), &ws_);
   for (size_t j = 0; j < joints->size(); ++j) {
     const JointPlacement& place = tree_.placements[j];
     if (place.tree_node < 0) continue;
@@ -60,7 +102,7 @@ void HeldPose::LoadJoints(const Vector6d& w_hand, const VectorXd& mu,
   }
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
     const Loop& loop = tree_.loops[l];
-    (*joints)[loop.joint] = WrenchOfMultipliers(loop, ws_.loops[l], mu.data() + loop.row);
+    (*joints)[loop.joint] = WrenchOfMultipliers(loop, ws_.loops[l], mu_.data() + loop.row);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "vmech/kinematics/inverse_kinematics.h"
+#include "vmech/kinematics/jacobian.h"
 #include "vmech/kinematics/tree_workspace.h"
 
 namespace vmech {
@@ -21,14 +22,23 @@ class HeldPose {
 
   /// Takes q [nq]; returns the pose of the grasp frame.
   const Posed& Set(const VectorXd& q) noexcept;
-  /// Nodes and loop errors alone, as needed between two steps of a closure.
+  /// The first half of Set, nodes and loop errors, as needed between two steps of a closure.
   void SetLoops(const VectorXd& q) noexcept;
+  /// The other half: grasp frame and Jacobians.
+  const Posed& SetJacobians() noexcept;
 
   const Posed& X_WG() const noexcept { return X_WG_; }
-  const MatrixXd& J() const noexcept { return J_; }  ///< [6, nv], V_WG = J v
-  const MatrixXd& C() const noexcept { return C_; }  ///< [rows, nv], C v = 0
+  const Matrix6Xd& J() const noexcept { return J_; }  ///< [6, nv], V_WG = J v
+  /// [rows, nv], C v = 0; lengths over the characteristic length, padded with rows of zeros.
+  const MatrixXd& C() const noexcept { return C_; }
+  const VectorXd& e2() const noexcept { return e2_; }  ///< loop errors, scaled and padded like C
   TreeWorkspace<double>& ws() noexcept { return ws_; }
   const TreeWorkspace<double>& ws() const noexcept { return ws_; }
+
+  Vector6d Twist(const VectorXd& v) const noexcept;                    ///< J v
+  void AddForces(const Vector6d& w_Go, VectorXd* tau) const noexcept;  ///< tau += J'w
+  /// d = -C' v, scaled and padded like C. Needs ForwardAccelerations(vdot = nullptr) in ws.
+  void TakeLoopBias(VectorXd* d) noexcept;
 
   /// Joint by joint of the mechanism, what the first link exerts on the second about the second
   /// anchor's origin, axes of the first anchor. Needs F_Bo of RecursiveNewtonEuler in ws, which it
@@ -44,9 +54,12 @@ class HeldPose {
  private:
   const KinematicTree& tree_;
   GraspFrame grasp_;
+  VectorXd row_scale_;
   TreeWorkspace<double> ws_;
   Posed X_WG_;
-  MatrixXd J_, C_;
+  Matrix6Xd J_;
+  MatrixXd C_;
+  VectorXd e2_, mu_;
 };
 
 /// Friction in proportion to a joint's load, and springs or friction at a cut joint, are beyond

@@ -73,7 +73,7 @@ MatrixXd MassMatrix(const KinematicTree& tree, const VectorXd& q) {
   TreeWorkspace<double> ws(tree);
   ForwardKinematics(tree, q.data(), &ws);
   MatrixXd M = MatrixXd::Zero(tree.nv, tree.nv);
-  MatrixXd J(6, tree.nv);
+  Matrix6Xd J(6, tree.nv);
   for (size_t i = 0; i < tree.nodes.size(); ++i) {
     const TreeNode& node = tree.nodes[i];
     if (node.link < 0) continue;

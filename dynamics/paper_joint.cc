@@ -23,10 +23,10 @@ KinematicTree CutThroughLinks(KinematicTree tree) {
 /// Rows of the drives: the grasp's Jacobian, or one unit row for each motor.
 MatrixXd DriveRows(const LoadModel& model, const LoadWorkspace<double>& ws) {
   if (model.hand) {
-    MatrixXd J(6, model.tree.nv);
+    Matrix6Xd J(6, model.tree.nv);
     PointJacobian(model.tree, ws.tree, GraspNode(model), GraspPose(model, ws.tree).p, &J);
     const bool point = model.tree.mechanism.grasps[model.hand->grasp].kind == GraspKind::kPoint;
-    return point ? MatrixXd(J.topRows(3)) : J;
+    return point ? MatrixXd(J.topRows(3)) : MatrixXd(J);
   }
   MatrixXd E = MatrixXd::Zero(static_cast<Eigen::Index>(model.drives.size()), model.tree.nv);
   for (size_t k = 0; k < model.drives.size(); ++k) {

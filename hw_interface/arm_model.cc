@@ -6,7 +6,6 @@
 
 #include "vmech/dynamics/newton_euler.h"
 #include "vmech/kinematics/forward_kinematics.h"
-#include "vmech/kinematics/jacobian.h"
 
 namespace vmech {
 namespace {
@@ -31,9 +30,9 @@ std::shared_ptr<const ArmDescription> Checked(std::shared_ptr<const ArmDescripti
 ArmModel::ArmModel(std::shared_ptr<const ArmDescription> arm)
     : arm_(Checked(std::move(arm))),
       ws_(arm_->tree),
-      bodies_(arm_->tree.nodes.size()),
+      mass_memory_(arm_->tree),
       applied_(arm_->tree.nodes.size()),
-      J_(MatrixXd::Zero(6, joints())),
+      J_(Matrix6Xd::Zero(6, joints())),
       M_(MatrixXd::Zero(joints(), joints())),
       bias_(VectorXd::Zero(joints())),
       rest_(VectorXd::Zero(joints())),
@@ -63,7 +62,7 @@ const VectorXd& ArmModel::GravityTorques() noexcept {
 }
 
 const MatrixXd& ArmModel::MassMatrix() noexcept {
-  CompositeMassMatrix(arm_->tree, ws_, &bodies_, &M_);
+  CompositeMassMatrix(arm_->tree, ws_, &mass_memory_, &M_);
   return M_;
 }
 

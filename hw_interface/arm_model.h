@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "vmech/dynamics/composite_inertia.h"
+#include "vmech/kinematics/jacobian.h"
 #include "vmech/kinematics/kinematic_tree.h"
 #include "vmech/kinematics/tree_workspace.h"
 
@@ -40,7 +41,7 @@ class ArmModel {
   void SetPosture(const double* q) noexcept;
 
   const Posed& X_DH() const noexcept { return X_DH_; }
-  const MatrixXd& J() const noexcept { return J_; }  ///< [6, joints], about Ho, axes of D
+  const Matrix6Xd& J() const noexcept { return J_; }  ///< [6, joints], about Ho, axes of D
 
   /// The torques that hold the arm still against gravity, h(q, 0).
   const VectorXd& GravityTorques() noexcept;
@@ -61,10 +62,11 @@ class ArmModel {
 
   std::shared_ptr<const ArmDescription> arm_;
   TreeWorkspace<double> ws_;
-  std::vector<CompositeInertia> bodies_;
+  MassMatrixMemory mass_memory_;
   std::vector<Wrenchd> applied_;
   Posed X_DH_;
-  MatrixXd J_, M_;
+  Matrix6Xd J_;
+  MatrixXd M_;
   VectorXd bias_, rest_, acceleration_;
   Eigen::LLT<MatrixXd> factor_;
 };

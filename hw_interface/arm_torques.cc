@@ -3,38 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
+#include "vmech/solvers/small_ldlt.h"
 #include "vmech/solvers/stopping_rule.h"
 
 namespace vmech {
 namespace {
 
-/// Row and column of the largest entry from row and column `first` on; columns have six rows.
-std::pair<int, int> LargestBeyond(int first, int columns, const double* const* column) noexcept {
-  std::pair<int, int> at{first, first};
-  double largest = 0;
-  for (int j = first; j < columns; ++j) {
-    for (int i = first; i < 6; ++i) {
-      const double size = std::abs(column[j][i]);
-      if (size > largest) largest = size, at = {i, j};
-    }
-  }
-  return at;
-}
-
-/// Column k becomes that of the unit matrix, with the pivot from `row`.
-void Eliminate(int k, int row, int columns, double* const* column) noexcept {
-  std::array<double, 6> factor;
-  std::swap(column[k][k], column[k][row]);
-  const double inverse = 1 / column[k][k];
-  for (int i = 0; i < 6; ++i) factor[i] = i == k ? 0 : column[k][i];
-  for (int j = k + 1; j < columns; ++j) {
-    std::swap(column[j][k], column[j][row]);
-    column[j][k] *= inverse;
-    for (int i = 0; i < 6; ++i) column[j][i] -= factor[i] * column[j][k];
-  }
-}
+constexpr int kPaddedRows = 8;  // of a twist in whole registers
 
 }  // namespace
 
@@ -50,7 +26,7 @@ ArmTorques::ArmTorques(const PostureOptions& options, std::shared_ptr<const ArmD
       velocity_(arm_.joints(), KalmanEstimator(period, std::max(resolution, 1e-9))),
       posture_torque_(VectorXd::Zero(arm_.joints())),
       torque_(posture_torque_),
-      reduced_(arm_.J()),
+      reduced_(MatrixXd::Zero(kPaddedRows, arm_.joints())),
       free_(MatrixXd::Zero(arm_.joints(), arm_.joints())),
       momenta_(free_) {
   options.Validate();
@@ -69,7 +45,7 @@ void ArmTorques::Resolve(const MasterState& state, bool fresh,
     const double v = velocity_[i].Update(state.q[i]).v;
     posture_torque_[i] = options_.stiffness * (q_0[i] - state.q[i]) - options_.damping * v;
   }
-  torque_.noalias() = arm_.J().transpose() * command->F_Ho_D;
+  for (int i = 0; i < arm_.joints(); ++i) torque_[i] = arm_.J().col(i).dot(command->F_Ho_D);
   const int count = FindFreeMotions();
   for (int k = 0; k < count; ++k) {
     auto n_k = free_.col(k);
@@ -78,33 +54,55 @@ void ArmTorques::Resolve(const MasterState& state, bool fresh,
       n_k -= free_.col(i) * (momenta_.col(i).dot(n_k) / momenta_.col(i).dot(free_.col(i)));
     }
     arm_.Momenta(n_k.data(), p_k.data());
-    torque_ += p_k * (n_k.dot(posture_torque_) / n_k.dot(p_k));
+    double power = 0, inertia = 0;
+    for (int i = 0; i < arm_.joints(); ++i) {
+      power += n_k[i] * posture_torque_[i];
+      inertia += n_k[i] * p_k[i];
+    }
+    for (int i = 0; i < arm_.joints(); ++i) torque_[i] += p_k[i] * (power / inertia);
   }
   for (int i = 0; i < arm_.joints(); ++i) command->torque[i] = torque_[i];
 }
 
-/// Motions that leave the handle where it is, by Gauss-Jordan elimination with full pivoting;
-/// writes them to free_ and returns how many there are.
+/// Motions that leave the handle where it is, by Gauss-Jordan elimination, each row with its
+/// largest entry for a pivot; writes them to free_ and returns how many there are.
 int ArmTorques::FindFreeMotions() noexcept {
-  constexpr double kSingular = 1e-9;  // pivot over the largest: the handle cannot go that way
+  constexpr double kSingular = 1e-9;  // pivot over the norm of J: the handle cannot go that way
   const int n = arm_.joints();
   std::array<double*, kMaxArmJoints> column;  // those of pivots first
-  reduced_ = arm_.J();
-  for (int j = 0; j < n; ++j) column[j] = reduced_.col(j).data();
-  int rank = 0;
-  for (double largest = 0; rank < std::min(6, n); ++rank) {
-    const auto [row, at] = LargestBeyond(rank, n, column.data());
-    const double pivot = std::abs(column[at][row]);
-    largest = std::max(largest, pivot);
-    if (!(pivot > kSingular * largest)) break;
-    std::swap(column[rank], column[at]);
-    Eliminate(rank, row, n, column.data());
+  double square = 0;
+  for (int j = 0; j < n; ++j) {
+    column[j] = reduced_.col(j).data();
+    std::copy_n(arm_.J().col(j).data(), 6, column[j]);
+    square += Dot(column[j], column[j], kPaddedRows);
   }
-  const auto joint = [&](const double* c) { return (c - reduced_.data()) / 6; };
+  const double singular = kSingular * std::sqrt(square);
+  std::array<int, 6> pivot_row;
+  int rank = 0;
+  for (int row = 0; row < 6 && rank < n; ++row) {
+    int at = rank;
+    double largest = std::abs(column[rank][row]);
+    for (int j = rank + 1; j < n; ++j) {
+      const double size = std::abs(column[j][row]);
+      at = size > largest ? j : at;
+      largest = std::max(largest, size);
+    }
+    if (!(largest > singular)) continue;
+    std::swap(column[rank], column[at]);
+    const double inverse = 1 / column[rank][row];
+    for (int j = rank + 1; j < n; ++j) {
+      const double share = column[j][row] * inverse;
+      AddScaled(-share, column[rank], kPaddedRows, column[j]);
+      column[j][row] = share;
+    }
+    pivot_row[rank++] = row;
+  }
+  const auto joint = [&](const double* c) { return (c - reduced_.data()) / kPaddedRows; };
   for (int k = 0; k < n - rank; ++k) {
-    free_.col(k).setZero();
-    free_(joint(column[rank + k]), k) = 1;
-    for (int i = 0; i < rank; ++i) free_(joint(column[i]), k) = -column[rank + k][i];
+    double* motion = free_.col(k).data();
+    std::fill_n(motion, n, 0.0);
+    motion[joint(column[rank + k])] = 1;
+    for (int i = 0; i < rank; ++i) motion[joint(column[i])] = -column[rank + k][pivot_row[i]];
   }
   return n - rank;
 }

@@ -42,7 +42,7 @@ class ArmTorques {
 
   std::vector<KalmanEstimator> velocity_;
   VectorXd posture_torque_, torque_;
-  MatrixXd reduced_;         // J, reduced to a unit matrix in the columns of its pivots
+  MatrixXd reduced_;         // [8, joints] J, reduced to a unit matrix in the columns of its pivots
   MatrixXd free_, momenta_;  // n_k and M n_k, column by column
 };
 

@@ -163,7 +163,7 @@ double CoupledTick::FadingEnergy() const noexcept {
 }
 
 void CoupledTick::Account(CoupledStatus status, std::span<double> channels) noexcept {
-  const Vector6d e1 = HandError(dynamics_.X_WG(), X_WH_);
+  const Vector6d& e1 = dynamics_.e1();
   channels[0] = e1.head<3>().norm();
   channels[1] = e1.tail<3>().norm();
   channels[2] = dynamics_.w().head<3>().norm();

@@ -116,7 +116,7 @@ double InertiaRatio(const KinematicTree& tree, const GraspFrame& grasp, const Ve
                     tree.mechanism.name));
   }
   if (device.linear.mass == 0) return 0;
-  MatrixXd J(6, tree.nv);
+  Matrix6Xd J(6, tree.nv);
   PointJacobian(tree, ws, grasp.node, PoseInWorld(ws, grasp.node, grasp.X_BG).p, &J);
   // The handle's masses move the mechanism by D^1/2 J N (N'MN)^-1 N'J' D^1/2: eigenvalues 1/lambda.
   const MatrixXd JN = HandleMasses(grasp, device).cwiseSqrt().asDiagonal() * J * N;

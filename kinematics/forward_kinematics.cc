@@ -1,5 +1,6 @@
 #include "vmech/kinematics/forward_kinematics.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "vmech/kinematics/packet.h"
@@ -7,11 +8,28 @@
 namespace vmech {
 namespace {
 
+/// Sine and cosine of every coordinate; those of lengths mean nothing.
+void TakeSines(const KinematicTree& tree, const Packet* q, TreeWorkspace<Packet>* ws) {
+  for (int k = 0; k < tree.nq; ++k) SinCos(q[k], &ws->sine[k], &ws->cosine[k]);
+}
+
+/// Four at a time.
+void TakeSines(const KinematicTree& tree, const double* q, TreeWorkspace<double>* ws) {
+  for (int k = 0; k < tree.nq; k += Packet::kLanes) {
+    const int count = std::min(Packet::kLanes, tree.nq - k);
+    const Packet angle = Packet::Of([&](int lane) { return lane < count ? q[k + lane] : 0.0; });
+    Packet sine, cosine;
+    SinCos(angle, &sine, &cosine);
+    for (int lane = 0; lane < count; ++lane) {
+      ws->sine[k + lane] = sine[lane];
+      ws->cosine[k + lane] = cosine[lane];
+    }
+  }
+}
+
 /// R Rz(angle).
 template <typename T>
-Matrix3<T> TurnedAboutZ(const Matrix3<T>& R, const T& angle) {
-  T s, c;
-  SinCos(angle, &s, &c);
+Matrix3<T> TurnedAboutZ(const Matrix3<T>& R, const T& s, const T& c) {
   Matrix3<T> turned;
   turned.col(0) = c * R.col(0) + s * R.col(1);
   turned.col(1) = c * R.col(1) - s * R.col(0);
@@ -74,6 +92,7 @@ RelativeMotion<T> MotionAcross(const TreeNode& node, const Pose<T>& X_WB, const 
 
 template <typename T>
 void ForwardKinematics(const KinematicTree& tree, const T* q, TreeWorkspace<T>* ws) {
+  TakeSines(tree, q, ws);
   for (size_t i = 0; i < tree.nodes.size(); ++i) {
     const TreeNode& node = tree.nodes[i];
     Pose<T>& X = ws->nodes[i].X_WB;
@@ -82,14 +101,14 @@ void ForwardKinematics(const KinematicTree& tree, const T* q, TreeWorkspace<T>* 
       case NodeMotion::kFixed:
         break;
       case NodeMotion::kRevolute:
-        X.R = TurnedAboutZ(X.R, q[node.q]);
+        X.R = TurnedAboutZ(X.R, ws->sine[node.q], ws->cosine[node.q]);
         break;
       case NodeMotion::kPrismatic:
         X.p += q[node.q] * X.R.col(2);
         break;
       case NodeMotion::kScrew:
         X.p += (node.pitch * q[node.q]) * X.R.col(2);
-        X.R = TurnedAboutZ(X.R, q[node.q]);
+        X.R = TurnedAboutZ(X.R, ws->sine[node.q], ws->cosine[node.q]);
         break;
       case NodeMotion::kSpherical: {
         const Matrix3<T> R_FM = RotationOf(q + node.q);

@@ -39,6 +39,11 @@ template <typename T>
 JointAxis<T> AxisInWorld(const KinematicTree& tree, const TreeWorkspace<T>& ws, int node_index,
                          int axis);
 
+/// The same [v; w] at Q.
+template <typename T>
+Vector6<T> UnitTwistAt(const KinematicTree& tree, const TreeWorkspace<T>& ws, int node_index,
+                       int axis, const Vector3<T>& p_WQ);
+
 // Small and everywhere: inline.
 
 template <typename T>
@@ -70,6 +75,18 @@ JointAxis<T> AxisInWorld(const KinematicTree& tree, const TreeWorkspace<T>& ws, 
   const Vector3<T> column = node.X_PF.R.col(axis).cast<T>();
   if (node.parent < 0) return {-column, zero};
   return {-(ws.nodes[node.parent].X_WB.R * column), zero};
+}
+
+template <typename T>
+Vector6<T> UnitTwistAt(const KinematicTree& tree, const TreeWorkspace<T>& ws, int node_index,
+                       int axis, const Vector3<T>& p_WQ) {
+  const Pose<T>& X_WB = ws.nodes[node_index].X_WB;
+  const Vector3<T> r = p_WQ - X_WB.p;
+  if (tree.nodes[node_index].motion == NodeMotion::kRevolute) {
+    return Stacked<T>(X_WB.R.col(2).cross(r), X_WB.R.col(2));
+  }
+  const JointAxis<T> s = AxisInWorld(tree, ws, node_index, axis);
+  return Stacked<T>(s.linear + s.angular.cross(r), s.angular);
 }
 
 }  // namespace vmech

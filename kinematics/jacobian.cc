@@ -6,36 +6,30 @@
 namespace vmech {
 
 void PointJacobian(const KinematicTree& tree, const TreeWorkspace<double>& ws, int node,
-                   const Vector3d& p_WQ, MatrixXd* J) {
+                   const Vector3d& p_WQ, Matrix6Xd* J) {
   J->setZero();
   for (int n = node; n >= 0; n = tree.nodes[n].parent) {
     const TreeNode& carrier = tree.nodes[n];
     if (carrier.v < 0) continue;
     const int count = carrier.motion == NodeMotion::kSpherical ? 3 : 1;
     for (int k = 0; k < count; ++k) {
-      const JointAxis<double> axis = AxisInWorld(tree, ws, n, k);
-      J->col(carrier.v + k) << axis.linear + axis.angular.cross(p_WQ - ws.nodes[n].X_WB.p),
-          axis.angular;
+      J->col(carrier.v + k) = UnitTwistAt(tree, ws, n, k, p_WQ);
     }
   }
 }
 
 template <typename T>
 Vector6<T> PointTwist(const TreeWorkspace<T>& ws, int node, const Vector3<T>& p_WQ) {
-  Vector6<T> V = Vector6<T>::Zero();
-  if (node < 0) return V;
+  if (node < 0) return Vector6<T>::Zero();
   const NodeState<T>& s = ws.nodes[node];
-  V << s.v + s.w.cross(p_WQ - s.X_WB.p), s.w;
-  return V;
+  return Stacked<T>(s.v + s.w.cross(p_WQ - s.X_WB.p), s.w);
 }
 
 Vector6d PointAcceleration(const TreeWorkspace<double>& ws, int node, const Vector3d& p_WQ) {
-  Vector6d A = Vector6d::Zero();
-  if (node < 0) return A;
+  if (node < 0) return Vector6d::Zero();
   const NodeState<double>& s = ws.nodes[node];
   const Vector3d r = p_WQ - s.X_WB.p;
-  A << s.a + s.alpha.cross(r) + s.w.cross(s.w.cross(r)), s.alpha;
-  return A;
+  return Stacked<double>(s.a + s.alpha.cross(r) + s.w.cross(s.w.cross(r)), s.alpha);
 }
 
 void FreeMotions(const TreeWorkspace<double>& ws, DependentSolver<double>* dependents,

@@ -5,10 +5,12 @@
 
 namespace vmech {
 
+using Matrix6Xd = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
 /// Geometric Jacobian J [6, nv] of a point Q that moves with a node, V_WQ = J v, [v; w], world
 /// axes. Needs X_WB. `J` must be [6, nv].
 void PointJacobian(const KinematicTree& tree, const TreeWorkspace<double>& ws, int node,
-                   const Vector3d& p_WQ, MatrixXd* J);
+                   const Vector3d& p_WQ, Matrix6Xd* J);
 
 /// Twist and acceleration [linear; angular] of a point Q of a node. Need w, v and alpha, a.
 template <typename T>

@@ -127,10 +127,9 @@ void LoopJacobian(const KinematicTree& tree, TreeWorkspace<T>* ws) {
     const LoopState<T>& s = ws->loops[l];
     Vector6<T>* column = &ws->loop_columns[ws->first_column[l]];
     for (const LoopColumn& c : loop.columns) {
-      const JointAxis<T> axis = AxisInWorld(tree, *ws, c.node, c.axis);
-      const Vector3<T> linear = axis.linear + axis.angular.cross(s.p_WM - ws->nodes[c.node].X_WB.p);
-      *column++ = ProjectOnRows<T>(loop, s, c.sign * (s.R_WF.transpose() * linear),
-                                   c.sign * (s.R_WF.transpose() * axis.angular));
+      const Vector6<T> V = UnitTwistAt(tree, *ws, c.node, c.axis, s.p_WM);
+      *column++ = ProjectOnRows<T>(loop, s, c.sign * (s.R_WF.transpose() * V.template head<3>()),
+                                   c.sign * (s.R_WF.transpose() * V.template tail<3>()));
     }
   }
 }

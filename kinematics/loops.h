@@ -97,34 +97,25 @@ Vector6<T> ProjectOnRows(const Loop& loop, const LoopState<T>& state, const Vect
                          const Vector3<T>& angular) {
   const T zero(0);
   const Vector3<T>&l = linear, &a = angular;
-  Vector6<T> rows;
   switch (loop.type) {
     case JointType::kRevolute:
-      rows << l[0], l[1], l[2], a[0], a[1], zero;
-      break;
+      return {l[0], l[1], l[2], a[0], a[1], zero};
     case JointType::kPrismatic:
-      rows << l[0], l[1], a[0], a[1], a[2], zero;
-      break;
+      return {l[0], l[1], a[0], a[1], a[2], zero};
     case JointType::kCylindrical:
-      rows << l[0], l[1], a[0], a[1], zero, zero;
-      break;
+      return {l[0], l[1], a[0], a[1], zero, zero};
     case JointType::kScrew:
-      rows << l[0], l[1], a[0], a[1], l[2] - loop.pitch * a[2], zero;
-      break;
+      return {l[0], l[1], a[0], a[1], l[2] - loop.pitch * a[2], zero};
     case JointType::kUniversal:
-      rows << l, state.n_F.dot(a), zero, zero;
-      break;
+      return {l[0], l[1], l[2], state.n_F.dot(a), zero, zero};
     case JointType::kSpherical:
-      rows << l, zero, zero, zero;
-      break;
+      return {l[0], l[1], l[2], zero, zero, zero};
     case JointType::kPlanar:
-      rows << l[2], a[0], a[1], zero, zero, zero;
-      break;
+      return {l[2], a[0], a[1], zero, zero, zero};
     case JointType::kWeld:
-      rows << l, a;
       break;
   }
-  return rows;
+  return Stacked<T>(l, a);
 }
 
 template <typename T>

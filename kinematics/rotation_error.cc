@@ -25,8 +25,12 @@ double ArcsineRatio(double x2) {
 
 Vector3d Logarithm(const Matrix3d& R) {
   const Vector3d skew = SkewPart(R);  // sin(angle) axis
-  const double sine2 = skew.squaredNorm();
-  if (sine2 < 0.01 && R.trace() > 2) return ArcsineRatio(sine2) * skew;
+  const double sine2 = skew.squaredNorm(), cosine = 0.5 * (R.trace() - 1);
+  if (cosine > 0) {
+    if (sine2 < 0.01) return ArcsineRatio(sine2) * skew;
+    const double sine = std::sqrt(sine2);
+    return std::atan2(sine, cosine) / sine * skew;
+  }
   Eigen::Quaterniond turn(R);
   if (turn.w() < 0) turn.coeffs() = -turn.coeffs();
   const double sine = turn.vec().norm();  // of half the angle
@@ -69,9 +73,7 @@ Matrix3d LogarithmCurvature(const Vector3d& e, const Vector3d& g) {
 }  // namespace
 
 Vector6d HandError(const Posed& X_WG, const Posed& X_WH) {
-  Vector6d e1;
-  e1 << X_WH.p - X_WG.p, Logarithm(X_WH.R * X_WG.R.transpose());
-  return e1;
+  return Stacked<double>(X_WH.p - X_WG.p, Logarithm(X_WH.R * X_WG.R.transpose()));
 }
 
 Vector3d RotationErrorOf(RotationError kind, const Matrix3d& R_E) {

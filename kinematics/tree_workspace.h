@@ -38,11 +38,12 @@ struct TreeWorkspace {
   /// Columns of C, loop after loop in the order of Loop::columns; the first `rows` entries count.
   std::vector<Vector6<T>> loop_columns;
   std::vector<int> first_column;  ///< of each loop in loop_columns
+  std::vector<T> sine, cosine;    ///< of the coordinates [nq]
 };
 
 template <typename T>
 TreeWorkspace<T>::TreeWorkspace(const KinematicTree& tree)
-    : nodes(tree.nodes.size()), loops(tree.loops.size()) {
+    : nodes(tree.nodes.size()), loops(tree.loops.size()), sine(tree.nq), cosine(tree.nq) {
   int columns = 0;
   for (const Loop& loop : tree.loops) {
     first_column.push_back(columns);

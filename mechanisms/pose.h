@@ -18,6 +18,12 @@ using Eigen::VectorXd;
 using Vector6d = Vector6<double>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
+/// [a; b]; quicker than Eigen's comma, which looks for alignment.
+template <typename T>
+Vector6<T> Stacked(const Vector3<T>& a, const Vector3<T>& b) {
+  return {a[0], a[1], a[2], b[0], b[1], b[2]};
+}
+
 /// The pose X_AB of a frame B in a frame A: p_A = R_AB p_B + p_AB. Lengths in metres.
 /// Products chain, X_AC = X_AB * X_BC. T is the scalar.
 template <typename T>
@@ -53,11 +59,7 @@ struct Wrench {
   /// The same wrench in the axes of a frame whose orientation is R (columns: its axes here).
   Wrench In(const Matrix3<T>& R) const { return {R.transpose() * force, R.transpose() * moment}; }
   /// [f; m].
-  Vector6<T> Stacked() const {
-    Vector6<T> w;
-    w << force, moment;
-    return w;
-  }
+  Vector6<T> Stacked() const { return vmech::Stacked<T>(force, moment); }
 };
 using Wrenchd = Wrench<double>;
 

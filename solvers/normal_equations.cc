@@ -2,24 +2,10 @@
 
 #include <algorithm>
 
+#include "vmech/solvers/small_ldlt.h"
+
 namespace vmech {
 namespace {
-
-// a'b, four terms at a time and the rest of m without a loop.
-inline double Dot(const double* a, const double* b, int m) noexcept {
-  using Pack = Eigen::Array4d;
-  using Load = Eigen::Map<const Pack>;
-  double rest = 0;
-  if (m & 1) --m, rest = a[m] * b[m];
-  if (m & 2) m -= 2, rest += a[m] * b[m] + a[m + 1] * b[m + 1];
-  if (m == 0) return rest;
-  Pack sum = Load(a) * Load(b);
-  for (int k = 4; k < m; k += 4) sum += Load(a + k) * Load(b + k);
-  return sum.sum() + rest;
-}
-
-// The kernels below take their size from the template where it is not zero, so that the compiler
-// unrolls them: twice as fast for the few unknowns of one loop.
 
 template <int kSize>
 void FormKernel(const Linearization& at_x, double weight, const double* forces,
@@ -39,46 +25,16 @@ void FormKernel(const Linearization& at_x, double weight, const double* forces,
   }
 }
 
-// The lower triangle becomes unit L, with 1/D on the diagonal.
-template <int kSize>
-bool FactorInPlace(double* L, int size) noexcept {
-  const int n = kSize > 0 ? kSize : size;
-  for (int j = 0; j < n; ++j) {
-    double* const L_j = L + j * n;
-    if (!(L_j[j] > 0)) return false;
-    const double inverse = 1 / L_j[j];
-    L_j[j] = inverse;
-    for (int k = j + 1; k < n; ++k) {
-      const double scaled = L_j[k] * inverse;
-      for (int i = k; i < n; ++i) L[k * n + i] -= scaled * L_j[i];
-    }
-    for (int i = j + 1; i < n; ++i) L_j[i] *= inverse;
-  }
-  return true;
-}
-
-template <int kSize>
-void SolveInPlace(const double* L, int size, double* x) noexcept {
-  const int n = kSize > 0 ? kSize : size;
-  for (int j = 0; j < n; ++j) {
-    for (int i = j + 1; i < n; ++i) x[i] -= L[j * n + i] * x[j];
-  }
-  for (int j = n - 1; j >= 0; --j) {
-    x[j] *= L[j * n + j];
-    for (int i = j + 1; i < n; ++i) x[j] -= L[j * n + i] * x[i];
-  }
-}
-
 }  // namespace
 
 struct NormalEquations::Kernels {
   void (*form)(const Linearization&, double, const double*, NormalEquations*) noexcept;
-  bool (*factor)(double*, int) noexcept;
+  bool (*factor)(int, double*) noexcept;
   void (*solve)(const double*, int, double*) noexcept;
 
   template <int kSize>
   static constexpr Kernels Of() {
-    return {FormKernel<kSize>, FactorInPlace<kSize>, SolveInPlace<kSize>};
+    return {FormKernel<kSize>, FactorLdlt<kSize>, SolveLdlt<kSize>};
   }
   static const Kernels* ForSize(int size);
 };
@@ -111,7 +67,7 @@ bool NormalEquations::Factor(const VectorXd& damping) noexcept {
     else
       factor_(j, j) += damping[j];
   }
-  return kernels_->factor(factor_.data(), size());
+  return kernels_->factor(size(), factor_.data());
 }
 
 // Row and column j of what is to be factored become those of the unit matrix.

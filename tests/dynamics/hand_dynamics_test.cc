@@ -112,7 +112,7 @@ TEST_P(EveryHeldExample, PowerOfTheHandIsTheRateOfTheEnergy) {
   dynamics.SetPose(held_.q);
   ASSERT_TRUE(dynamics.Evaluate(hand.V_WH, hand.A_WH));
   const VectorXd v = dynamics.v(), vdot = dynamics.vdot();
-  MatrixXd J(6, held_.tree.nv);
+  Matrix6Xd J(6, held_.tree.nv);
   PointJacobian(held_.tree, held_.ws, held_.frame.node, held_.X_WG.p, &J);
   const double power = dynamics.w_d().dot(J * v);
   constexpr double kStep = 1e-5;
@@ -121,7 +121,7 @@ TEST_P(EveryHeldExample, PowerOfTheHandIsTheRateOfTheEnergy) {
     Integrate(held_.tree, t * v + 0.5 * t * t * vdot, &q);
     TreeWorkspace<double> ws(held_.tree);
     ForwardKinematics(held_.tree, q.data(), &ws);
-    MatrixXd J_t(6, held_.tree.nv);
+    Matrix6Xd J_t(6, held_.tree.nv);
     const Posed X = PoseInWorld(ws, held_.frame.node, held_.frame.X_BG);
     PointJacobian(held_.tree, ws, held_.frame.node, X.p, &J_t);
     dynamics.SetPose(q);
@@ -138,7 +138,7 @@ TEST_P(EveryHeldExample, HandWrenchLiesAlongTheFreeMotion) {
   dynamics.SetPose(held_.q);
   ASSERT_TRUE(dynamics.Evaluate(Vector6d::Zero(), Vector6d::Zero()));
   const Vector6d yielding = dynamics.w_d().cwiseQuotient(K_);
-  MatrixXd J(6, held_.tree.nv);
+  Matrix6Xd J(6, held_.tree.nv);
   PointJacobian(held_.tree, held_.ws, held_.frame.node, held_.X_WG.p, &J);
   dynamics.SetPose(held_.q);
   ASSERT_TRUE(dynamics.Evaluate(yielding, Vector6d::Zero()));

@@ -113,9 +113,9 @@ TEST_P(EveryOpenTree, CompositeMassMatrixIsThatOfTheKineticEnergy) {
   const VectorXd q = RandomCoordinates(tree, &random);
   TreeWorkspace<double> ws(tree);
   EvaluatePose(tree, q, &ws, false);
-  std::vector<CompositeInertia> bodies(tree.nodes.size());
+  MassMatrixMemory memory(tree);
   MatrixXd M(tree.nv, tree.nv);
-  CompositeMassMatrix(tree, ws, &bodies, &M);
+  CompositeMassMatrix(tree, ws, &memory, &M);
   EXPECT_LT((M - MassMatrix(tree, q)).norm(), kIdentity * M.norm());
 }
 

@@ -42,7 +42,7 @@ MatrixXd FreeVelocities(const KinematicTree& tree, const VectorXd& q) {
   if (tree.loops.empty()) return MatrixXd::Identity(tree.nv, tree.nv);
   HeldPose pose(tree, GraspFrame{});
   pose.Set(q);
-  return FindNullSpace(LoopRowScale(tree).asDiagonal() * pose.C(), kRank).basis;
+  return FindNullSpace(pose.C(), kRank).basis;
 }
 
 FreeMotion::FreeMotion(const KinematicTree& tree, const GraspFrame& grasp, const VectorXd& q,

@@ -36,7 +36,7 @@ TEST_P(EveryExample, JacobianIsTheDerivativeOfThePose) {
   const VectorXd v = random_.Vector(tree_.nv);
   EvaluatePose(tree_, q, &ws_);
   const Posed X_WQ = PoseInWorld(ws_, node, X_BQ);
-  MatrixXd J(6, tree_.nv);
+  Matrix6Xd J(6, tree_.nv);
   PointJacobian(tree_, ws_, node, X_WQ.p, &J);
   auto pose = [&](double t) {
     EvaluatePose(tree_, Moved(q, v, t), &ws_);

@@ -70,7 +70,7 @@ TEST_P(Pulled, HandWrenchDoesNoWorkOnFreeMotions) {
   TreeWorkspace<double> ws(tree_);
   ForwardKinematics(tree_, exact_.x.data(), &ws);
   const Posed X_WG = problem_.GraspPose(exact_.x);
-  MatrixXd J(6, tree_.nv);
+  Matrix6Xd J(6, tree_.nv);
   PointJacobian(tree_, ws, problem_.grasp().node, X_WG.p, &J);
   const VectorXd force = J.transpose() * problem_.HandWrench(exact_.x);
   const MatrixXd N = FindNullSpace(At(exact_.x).C, kRank).basis;
@@ -84,7 +84,7 @@ TEST_P(Pulled, HandWrenchDoesNoWorkOnFreeMotions) {
 TEST_P(Pulled, MultipliersInNewtonsBalanceTheHandWrench) {
   TreeWorkspace<double> ws(tree_);
   ForwardKinematics(tree_, exact_.x.data(), &ws);
-  MatrixXd J(6, tree_.nv);
+  Matrix6Xd J(6, tree_.nv);
   PointJacobian(tree_, ws, problem_.grasp().node, problem_.GraspPose(exact_.x).p, &J);
   const VectorXd force = J.transpose() * problem_.HandWrench(exact_.x);
   LoopErrors(tree_, &ws);

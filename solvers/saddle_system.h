@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace vmech {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// The equations of motion under equality constraints, and of everything that looks like them,
+///
+///   A x + C' mu = b,   C x = d,
+///
+/// by the method of multipliers with one factorisation and without a rank decision: C may have
+/// redundant rows, and A need only be positive definite where C leaves x free.
+///
+///   (A + w C'C) x = b + C'(w d - mu),   mu += w (C x - d)
+///
+/// What C x - d leaves shrinks by A over w C'C from one solve to the next: with a ratio of 1e5,
+/// three leave 1e-9 and less; beyond 1e7 rounding wins. Redundant rows get the smallest
+/// multipliers. Made for some ten unknowns; all memory is taken by the constructor.
+class SaddleSystem {
+ public:
+  /// `equations`: the rows of C, a multiple of four; fill them up with zeros, and d as well.
+  SaddleSystem(int unknowns, int equations);
+
+  /// w; equations are taken to be scaled alike.
+  void SetWeight(double weight) noexcept { weight_ = weight; }
+
+  /// A [unknowns, unknowns], whose lower triangle counts, and C [equations, unknowns]. False if the
+  /// sum is not positive definite.
+  [[nodiscard]] bool Factor(const MatrixXd& A, const MatrixXd& C) noexcept;
+  /// Writes x, for the C that was factored; its multipliers are then in mu() [equations].
+  void Solve(const MatrixXd& C, const VectorXd& b, const VectorXd& d, VectorXd* x) noexcept;
+  const VectorXd& mu() const noexcept { return mu_; }
+  /// The smallest x, in the metric of A, that comes near C x = d: one solve with b = 0.
+  void Approach(const MatrixXd& C, const VectorXd& d, VectorXd* x) noexcept;
+
+  /// G = B'B, B [multiple of four, unknowns]: for an A that is made so.
+  void Gram(const MatrixXd& B, MatrixXd* G) const noexcept;
+
+ private:
+  struct Kernels;
+  int size() const noexcept { return static_cast<int>(right_.size()); }
+  int equations() const noexcept { return static_cast<int>(mu_.size()); }
+
+  const Kernels& kernels_;
+  double weight_ = 1;
+  MatrixXd G_, L_;  // w C'C and the factors
+  VectorXd mu_, right_, s_, total_;
+};
+
+}  // namespace vmech
