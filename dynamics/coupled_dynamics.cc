@@ -183,9 +183,8 @@ bool CoupledDynamics::Slip() noexcept {
   return slipping_;
 }
 
-/// Velocities with the joints' limits.
+/// Velocities with the joints' limits; those that held last are tried first.
 bool CoupledDynamics::SolveWithLimits() noexcept {
-  for (Freedom& freedom : freedoms_) freedom.contact = 0;
   for (int i = 0; i < kContactChanges; ++i) {
     if (!SolveVelocity()) return false;
     if (!ChangeContacts()) break;
