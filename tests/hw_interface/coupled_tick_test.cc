@@ -200,9 +200,8 @@ std::complex<double> FeltOverTrueInertia(const std::string& name, double hertz) 
   HeldPose pose(tree, grasp);
   pose.Set(q);
   constexpr double kRank = 1e-9;
-  const MatrixXd N = tree.loops.empty()
-                         ? MatrixXd(MatrixXd::Identity(tree.nv, tree.nv))
-                         : FindNullSpace(pose.C(), kRank).basis;
+  const MatrixXd N = tree.loops.empty() ? MatrixXd(MatrixXd::Identity(tree.nv, tree.nv))
+                                        : FindNullSpace(pose.C(), kRank).basis;
   const MatrixXd JN = pose.J() * N, M = N.transpose() * MassMatrix(tree, q) * N;
 
   constexpr double kReach = 1e-3;  // [m]: the inertia changes along the way
