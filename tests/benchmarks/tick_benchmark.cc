@@ -23,6 +23,7 @@ const bool registered = [] {
     Register("paper", &HeldTick::Full, example, Architecture::kPaper);
     Register("paper_mechanism", &HeldTick::Step, example, Architecture::kPaper);
   }
+  Register("observer", &HeldTick::Observe, "crank", Architecture::kCoupled);
   Register("safety", &HeldTick::Filter, "crank", Architecture::kCoupled);
   Register("arm_torques", &HeldTick::Resolve, "crank", Architecture::kCoupled);
   return true;

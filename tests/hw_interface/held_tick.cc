@@ -55,12 +55,14 @@ HeldTick::HeldTick(const std::string& example, Architecture architecture)
   const Mechanism mechanism = Example(example);
   const int grasp = FindGrasp(mechanism, "handle");
   tree_ = std::make_unique<KinematicTree>(BuildKinematicTree(mechanism));
+  observer_ = std::make_unique<HandObserver>(HandObserverOptions{}, device_);
   tick_ = MakeTick(*tree_, grasp, device_, architecture);
   safety_ = std::make_unique<SafetyFilter>(SafetyOptions{}, device_);
   torques_ = std::make_unique<ArmTorques>(PostureOptions{}, device_.arm, device_.period,
                                           device_.angular.resolution);
   registration_ = GraspedAt(Matrix3d::Identity(), samples_[0].X_DH, tick_->GraspFrame());
   channels_.resize(tick_->ChannelNames().size());
+  ObserveOn(samples_[0]);
 }
 
 const MasterState& HeldTick::NextSample() {
@@ -74,9 +76,14 @@ const MasterState& HeldTick::NextSample() {
 
 void HeldTick::Full() noexcept VMECH_NONBLOCKING {
   const MasterState& state = NextSample();
+  ObserveOn(state);
   StepOn(state);
   FilterOf(state);
   torques_->Resolve(state, true, &command_);
+}
+
+void HeldTick::Observe() {
+  ObserveOn(NextSample());
 }
 
 void HeldTick::Step() {
@@ -91,12 +98,19 @@ void HeldTick::Resolve() {
   torques_->Resolve(NextSample(), true, &command_);
 }
 
+/// The arm of the samples exerts nothing.
+void HeldTick::ObserveOn(const MasterState& state) {
+  observer_->Update(state, Vector6d::Zero(), 1);
+  observed_ = registration_.Observed(observer_->X_DH(), observer_->V_DH());
+}
+
 void HeldTick::StepOn(const MasterState& state) {
   TickInput input;
   input.X_WH = registration_.HandInWorld(state.X_DH);
   input.fresh = true;
   input.elapsed = device_.period;
   input.state = &state;
+  input.observed = &observed_;
   wanted_ = tick_->Step(input, channels_);
 }
 

@@ -6,6 +6,7 @@
 
 #include "vmech/hw_interface/arm_torques.h"
 #include "vmech/hw_interface/coupled_tick.h"
+#include "vmech/hw_interface/hand_observer.h"
 #include "vmech/hw_interface/mechanism_tick.h"
 #include "vmech/hw_interface/nonblocking.h"
 #include "vmech/hw_interface/safety_filter.h"
@@ -25,9 +26,11 @@ class HeldTick {
  public:
   HeldTick(const std::string& example, Architecture architecture);
 
-  /// All that a runner does between a sample and the torques: mechanism, safety filter, arm.
+  /// All that a runner does between a sample and the torques: observer, mechanism, safety filter,
+  /// arm.
   void Full() noexcept VMECH_NONBLOCKING;
   // Its stages, each on the next sample.
+  void Observe();
   void Step();
   void Filter();
   void Resolve();
@@ -35,6 +38,7 @@ class HeldTick {
  private:
   /// To and fro over the samples, with sequence numbers that go on.
   const MasterState& NextSample();
+  void ObserveOn(const MasterState& state);
   void StepOn(const MasterState& state);
   void FilterOf(const MasterState& state);
 
@@ -45,10 +49,12 @@ class HeldTick {
   MasterState state_;
   std::uint64_t sequence_ = 0;
   std::unique_ptr<KinematicTree> tree_;
+  std::unique_ptr<HandObserver> observer_;
   std::unique_ptr<Tick> tick_;
   std::unique_ptr<SafetyFilter> safety_;
   std::unique_ptr<ArmTorques> torques_;
   Registration registration_;
+  ObservedHand observed_;
   TickOutput wanted_;
   MasterCommand command_;
   std::vector<double> channels_;
