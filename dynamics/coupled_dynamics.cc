@@ -24,7 +24,6 @@ constexpr double kClosed = 1e-11;      // [-] where the closing stops
 constexpr double kStillClosed = 1e-9;  // [-] beyond, a step is not taken
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr double kFarthest = 0.1;  // [rad] or [m] that a coordinate moves in a step
-constexpr int kPaddedTwist = 8;    // rows of a twist in whole registers
 
 HandCoupling Checked(HandCoupling coupling, GraspKind kind) {
   for (int i = 0; i < 6; ++i) {
@@ -62,7 +61,7 @@ CoupledDynamics::CoupledDynamics(const KinematicTree& tree, const GraspFrame& gr
       A_(M_),
       coupling_A_(M_),
       limited_A_(M_),
-      rootKJ_(MatrixXd::Zero(kPaddedTwist, tree.nv)),
+      rootKJ_(MatrixXd::Zero(PaddedSize(6), tree.nv)),
       mass_memory_(tree),
       q_(q),
       v_(VectorXd::Zero(tree.nv)),
@@ -112,8 +111,7 @@ void CoupledDynamics::Stop() noexcept {
 
 void CoupledDynamics::TakeHold(const GraspFrame& grasp) noexcept {
   pose_.SetGrasp(grasp);
-  pose_.Set(q_);
-  TakeVelocities();
+  pose_.SetJacobians();
   coupled_ = true;
 }
 

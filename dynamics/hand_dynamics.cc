@@ -13,6 +13,7 @@
 #include "vmech/kinematics/jacobian.h"
 #include "vmech/kinematics/linear_algebra.h"
 #include "vmech/kinematics/loops.h"
+#include "vmech/solvers/small_ldlt.h"
 
 namespace vmech {
 namespace {
@@ -21,8 +22,6 @@ namespace {
 constexpr double kLoopWeight = 1e5;
 /// Of the trace: holds what neither hand nor loops move, at a dead centre.
 constexpr double kDamping = 1e-11;
-
-constexpr int kPaddedTwist = 8;  // rows of a twist in whole registers
 
 Vector6d RowsThatCount(Vector6d K, GraspKind kind) {
   if (kind == GraspKind::kPoint) K.tail<3>().setZero();
@@ -45,7 +44,7 @@ HandDynamics::HandDynamics(const KinematicTree& tree, const GraspFrame& grasp,
       root_K_(K_.cwiseSqrt()),
       pose_(tree, grasp),
       system_(tree.nv, static_cast<int>(pose_.C().rows())),
-      rootKJ_(MatrixXd::Zero(kPaddedTwist, tree.nv)),
+      rootKJ_(MatrixXd::Zero(PaddedSize(6), tree.nv)),
       A_(MatrixXd::Zero(tree.nv, tree.nv)),
       q_(q),
       v_(VectorXd::Zero(tree.nv)),

@@ -8,17 +8,9 @@
 #include "vmech/dynamics/reactions.h"
 #include "vmech/kinematics/forward_kinematics.h"
 #include "vmech/kinematics/loops.h"
+#include "vmech/solvers/small_ldlt.h"
 
 namespace vmech {
-
-namespace {
-
-/// A multiple of four: whole registers.
-int Padded(int rows) {
-  return (rows + 3) / 4 * 4;
-}
-
-}  // namespace
 
 HeldPose::HeldPose(const KinematicTree& tree, const GraspFrame& grasp)
     : tree_(tree),
@@ -26,7 +18,7 @@ HeldPose::HeldPose(const KinematicTree& tree, const GraspFrame& grasp)
       row_scale_(LoopRowScale(tree)),
       ws_(tree),
       J_(Matrix6Xd::Zero(6, tree.nv)),
-      C_(MatrixXd::Zero(Padded(tree.rows), tree.nv)),
+      C_(MatrixXd::Zero(PaddedSize(tree.rows), tree.nv)),
       e2_(VectorXd::Zero(C_.rows())),
       mu_(VectorXd::Zero(tree.rows)) {}
 

@@ -10,7 +10,7 @@
 namespace vmech {
 namespace {
 
-constexpr int kPaddedRows = 8;  // of a twist in whole registers
+constexpr int kPaddedRows = PaddedSize(6);
 
 }  // namespace
 

@@ -23,6 +23,8 @@ class ClosingHand {
 
   /// Opens: the next Step is the first of a new grasp.
   void Open() noexcept;
+  /// Has closed: holds as the coupling does.
+  void Hold() noexcept { hold_ = full_; }
   /// False once it holds what the coupling can pull.
   bool closing() const noexcept { return hold_ < full_; }
   /// A step of the mechanism with a hand at X_WH, moving with V_WH. In the first nothing pulls yet.

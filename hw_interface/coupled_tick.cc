@@ -94,7 +94,7 @@ bool CoupledTick::TakeHold(const Posed& X_WH) noexcept {
 void CoupledTick::Reset() noexcept {
   dynamics_.TakeHold(grasp_);
   dynamics_.Stop();
-  hand_ = ClosingHand(AtTheMechanism(options_), options_.grasp_rate / options_.scale, period_);
+  hand_.Hold();
   holds_ = true;
   felt_.setZero();
   fading_.setZero();

@@ -20,10 +20,7 @@ void Gram(double w, const double* B, int rows, int size, double* G) noexcept {
   for (int j = 0; j < n; ++j) {
     const double* B_j = B + j * rows;
     for (int i = j; i < n; ++i) {
-      const double* B_i = B + i * rows;
-      Four sum = LoadFour(B_i) * LoadFour(B_j);
-      for (int k = 4; k < rows; k += 4) sum += LoadFour(B_i + k) * LoadFour(B_j + k);
-      G[j * n + i] = G[i * n + j] = w * Sum(sum);
+      G[j * n + i] = G[i * n + j] = w * DotOfFours(B + i * rows, B_j, rows);
     }
   }
 }
@@ -33,11 +30,7 @@ template <int kSize>
 void AddTransposed(double w, const double* C, int rows, const double* d, const double* b, int size,
                    double* y) noexcept {
   const int n = kSize > 0 ? kSize : size;
-  for (int j = 0; j < n; ++j) {
-    Four sum = LoadFour(C + j * rows) * LoadFour(d);
-    for (int k = 4; k < rows; k += 4) sum += LoadFour(C + j * rows + k) * LoadFour(d + k);
-    y[j] = b[j] + w * Sum(sum);
-  }
+  for (int j = 0; j < n; ++j) y[j] = b[j] + w * DotOfFours(C + j * rows, d, rows);
 }
 
 /// The solves. The multipliers act as forces s = C'mu, which grow by w C'(C x - d) = G x - w C'd:

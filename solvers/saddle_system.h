@@ -21,7 +21,7 @@ using Eigen::VectorXd;
 /// multipliers. Made for some ten unknowns; all memory is taken by the constructor.
 class SaddleSystem {
  public:
-  /// `equations`: the rows of C, a multiple of four; fill them up with zeros, and d as well.
+  /// `equations`: the rows of C, filled up with zeros to PaddedSize; so is d.
   SaddleSystem(int unknowns, int equations);
 
   /// w; equations are taken to be scaled alike.

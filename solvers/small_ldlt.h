@@ -11,6 +11,11 @@ namespace vmech {
 /// Four numbers of a column.
 using Four = double __attribute__((vector_size(32)));
 
+/// The size of a column that is filled up to whole registers.
+constexpr int PaddedSize(int size) {
+  return (size + 3) / 4 * 4;
+}
+
 inline Four LoadFour(const double* x) noexcept {
   Four four;
   std::memcpy(&four, x, sizeof(four));
@@ -19,8 +24,12 @@ inline Four LoadFour(const double* x) noexcept {
 inline void StoreFour(const Four& four, double* x) noexcept {
   std::memcpy(x, &four, sizeof(four));
 }
-inline double Sum(const Four& x) noexcept {
-  return (x[0] + x[2]) + (x[1] + x[3]);
+
+/// a'b of whole registers, at least one.
+inline double DotOfFours(const double* a, const double* b, int m) noexcept {
+  Four sum = LoadFour(a) * LoadFour(b);
+  for (int k = 4; k < m; k += 4) sum += LoadFour(a + k) * LoadFour(b + k);
+  return (sum[0] + sum[2]) + (sum[1] + sum[3]);
 }
 
 /// a'b, four terms at a time and the rest of m without a loop.
@@ -28,10 +37,7 @@ inline double Dot(const double* a, const double* b, int m) noexcept {
   double rest = 0;
   if (m & 1) --m, rest = a[m] * b[m];
   if (m & 2) m -= 2, rest += a[m] * b[m] + a[m + 1] * b[m + 1];
-  if (m == 0) return rest;
-  Four sum = LoadFour(a) * LoadFour(b);
-  for (int k = 4; k < m; k += 4) sum += LoadFour(a + k) * LoadFour(b + k);
-  return Sum(sum) + rest;
+  return m == 0 ? rest : DotOfFours(a, b, m) + rest;
 }
 
 /// y += s x.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "hw_interface/held_tick.h"
+#include "hw_interface/tick_input.h"
 #include "support/count_allocations.h"
 #include "support/examples.h"
 #include "vmech/hw_interface/coupled_tick.h"
@@ -57,18 +58,14 @@ TEST(CoupledTick, AllocatesNothingWhileItsHandLeadsItSlipsAndLetsGo) {
   for (const char* name :
        {"crank", "two-link-arm", "slider-crank", "four-bar", "rssr", "bennett", "stewart-gough"}) {
     const KinematicTree tree = BuildKinematicTree(Example(name));
-    VectorXd q = StartCoordinates(tree);
-    ASSERT_TRUE(Assemble(tree, {}, &q).closed);
+    const VectorXd q = ClosedStart(tree);
     CoupledTickOptions options;
     options.coupling.stiffness.setConstant(1e4);
     options.coupling.damping.setConstant(50);
     options.coupling.max_force = 50;
     CoupledTick tick(tree, FindGrasp(tree.mechanism, "handle"), q, 1e-3, options);
     std::vector<double> channels(tick.ChannelNames().size());
-    TickInput input;
-    input.X_WH = tick.GraspFrame();
-    input.fresh = true;
-    input.elapsed = 1e-3;
+    TickInput input = FreshInput(tick.GraspFrame(), 1e-3);
     const long before = allocations;
     for (int k = 0; k < 2000; ++k) {
       input.X_WH.p.x() += 1e-4 * std::sin(0.01 * k);

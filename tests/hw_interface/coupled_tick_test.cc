@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "hw_interface/free_motion.h"
+#include "hw_interface/tick_input.h"
 #include "support/examples.h"
 #include "vmech/dynamics/hand_dynamics.h"
 #include "vmech/dynamics/newton_euler.h"
@@ -24,12 +25,6 @@ namespace {
 constexpr double kPeriod = 1e-3;
 constexpr double kSmoothing = 2e-3;
 
-VectorXd Start(const KinematicTree& tree) {
-  VectorXd q = StartCoordinates(tree);
-  EXPECT_TRUE(Assemble(tree, {}, &q).closed);
-  return q;
-}
-
 Posed HandleOf(const SimulatedMasterOptions& options) {
   return ArmModel(std::make_shared<const ArmDescription>(SarcosMasterArm(options.hand.mass)))
       .X_DH();
@@ -39,7 +34,7 @@ Posed HandleOf(const SimulatedMasterOptions& options) {
 struct Session {
   Session(const Mechanism& mechanism, const std::string& grasp_name,
           const SimulatedMasterOptions& arm)
-      : tree(BuildKinematicTree(mechanism)), q(Start(tree)), master(arm) {
+      : tree(BuildKinematicTree(mechanism)), q(ClosedStart(tree)), master(arm) {
     master.Configure();
     grasp = FindGrasp(mechanism, grasp_name);
     choice = ChooseCoupling(tree, GraspFrameOf(tree, grasp), q, master.info(), kSmoothing);
@@ -63,11 +58,7 @@ struct Session {
   }
   TickOutput Step(const Posed& X_WH) {
     std::vector<double> channels(tick->ChannelNames().size());
-    TickInput input;
-    input.X_WH = X_WH;
-    input.fresh = true;
-    input.elapsed = kPeriod;
-    return tick->Step(input, channels);
+    return tick->Step(FreshInput(X_WH, kPeriod), channels);
   }
   Vector6d Rest(const Posed& X_WH) {
     for (int k = 0; k < 5000; ++k) EXPECT_EQ(Step(X_WH).status, TickStatus::kOk);
@@ -195,7 +186,7 @@ std::complex<double> FeltOverTrueInertia(const std::string& name, double hertz) 
   Mechanism mechanism = Example(name);
   mechanism.gravity_W.setZero();
   const KinematicTree tree = BuildKinematicTree(mechanism);
-  const VectorXd q = Start(tree);
+  const VectorXd q = ClosedStart(tree);
   const GraspFrame grasp = GraspFrameOf(tree, FindGrasp(mechanism, "handle"));
   HeldPose pose(tree, grasp);
   pose.Set(q);
@@ -264,7 +255,7 @@ TEST(ChooseCoupling, ScalesDownWhatIsTooHeavyForTheDevice) {
   device.takes_wrench = true;
   device.linear = {10, 1, 0, 0, 100, 2};
   device.angular = {1, 1, 0, 0, 10, 15};
-  const VectorXd q = Start(tree);
+  const VectorXd q = ClosedStart(tree);
   const CouplingChoice choice = ChooseCoupling(tree, grasp, q, device, kSmoothing);
   // The platform's 10 kg and its legs' share.
   EXPECT_GT(choice.weight, 10 * 9.81);
@@ -286,9 +277,9 @@ TEST(ChooseCoupling, SlowerDevicesGetASofterSpring) {
   SimulatedMaster master;
   master.Configure();
   DeviceInfo device = master.info();
-  const CouplingChoice fast = ChooseCoupling(tree, grasp, Start(tree), device, kSmoothing);
+  const CouplingChoice fast = ChooseCoupling(tree, grasp, ClosedStart(tree), device, kSmoothing);
   device.delay = 0.01;
-  const CouplingChoice slow = ChooseCoupling(tree, grasp, Start(tree), device, kSmoothing);
+  const CouplingChoice slow = ChooseCoupling(tree, grasp, ClosedStart(tree), device, kSmoothing);
   EXPECT_EQ(fast.scale, 1);
   EXPECT_LT(slow.scale, 0.2);
   EXPECT_LT(slow.coupling.stiffness[0], 0.2 * fast.coupling.stiffness[0]);

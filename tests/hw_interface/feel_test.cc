@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "hw_interface/free_motion.h"
+#include "hw_interface/tick_input.h"
 #include "support/examples.h"
 #include "vmech/dynamics/load_study.h"
 #include "vmech/hw_interface/coupled_tick.h"
@@ -61,11 +62,7 @@ struct Held {
   explicit Held(const Mechanism& mechanism) : Held(mechanism, CouplingFor(mechanism)) {}
 
   TickOutput Step(const Posed& X_WH) {
-    TickInput input;
-    input.X_WH = X_WH;
-    input.fresh = true;
-    input.elapsed = kPeriod;
-    const TickOutput out = tick.Step(input, channels);
+    const TickOutput out = tick.Step(FreshInput(X_WH, kPeriod), channels);
     EXPECT_EQ(out.status, TickStatus::kOk);
     return out;
   }

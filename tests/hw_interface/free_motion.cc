@@ -31,12 +31,6 @@ VectorXd Tangent(const KinematicTree& tree, const VectorXd& q, const VectorXd& b
 
 }  // namespace
 
-VectorXd ClosedStart(const KinematicTree& tree) {
-  VectorXd q = StartCoordinates(tree);
-  Close(tree, &q);
-  return q;
-}
-
 MatrixXd FreeVelocities(const KinematicTree& tree, const VectorXd& q) {
   constexpr double kRank = 1e-9;
   if (tree.loops.empty()) return MatrixXd::Identity(tree.nv, tree.nv);

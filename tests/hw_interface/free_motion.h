@@ -25,8 +25,6 @@ class FreeMotion {
   MotionLaw inertia_ = MotionLaw::Uniform(0, 0);
 };
 
-/// The closed pose at the file's start values.
-VectorXd ClosedStart(const KinematicTree& tree);
 /// Basis of the velocities that the loops allow at q, which may come from any closed pose.
 MatrixXd FreeVelocities(const KinematicTree& tree, const VectorXd& q);
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "hw_interface/free_motion.h"
+#include "hw_interface/tick_input.h"
 #include "support/examples.h"
 #include "vmech/hw_interface/coupled_tick.h"
 #include "vmech/hw_interface/coupling_choice.h"
@@ -28,10 +28,7 @@ class EveryGrab : public testing::TestWithParam<std::string> {
   }
 
   TickOutput Step(const Posed& X_WH, bool held) {
-    TickInput input;
-    input.X_WH = X_WH;
-    input.fresh = true;
-    input.elapsed = kPeriod;
+    TickInput input = FreshInput(X_WH, kPeriod);
     input.held = held;
     return tick_->Step(input, channels_);
   }

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "hw_interface/free_motion.h"
+#include "hw_interface/tick_input.h"
 #include "support/examples.h"
 #include "vmech/hw_interface/coupled_tick.h"
 #include "vmech/hw_interface/coupling_choice.h"

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <random>
 
+#include "hw_interface/tick_input.h"
 #include "support/examples.h"
 #include "vmech/hw_interface/coupled_tick.h"
 #include "vmech/hw_interface/coupling_choice.h"
@@ -87,8 +88,7 @@ void RunSession(unsigned seed) {
   Random random(seed);
   const Mechanism mechanism = Example(names[seed % names.size()]);
   const KinematicTree tree = BuildKinematicTree(mechanism);
-  VectorXd q = StartCoordinates(tree);
-  ASSERT_TRUE(Assemble(tree, {}, &q).closed);
+  const VectorXd q = ClosedStart(tree);
   SimulatedMaster master(RandomArm(&random, seed));
   master.Configure();
   const int grasp = FindGrasp(mechanism, "handle");

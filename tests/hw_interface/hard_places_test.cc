@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "hw_interface/tick_input.h"
 #include "support/examples.h"
 #include "vmech/hw_interface/coupled_tick.h"
 #include "vmech/hw_interface/coupling_choice.h"
@@ -131,10 +132,7 @@ TEST(HardPlaces, HandBeyondTheReachIsPulledWithNoMoreThanTheDeviceCan) {
   Session session(arm, Vector3d::Zero());
   CoupledTick tick = session.Coupled();
   std::vector<double> channels(tick.ChannelNames().size());
-  TickInput input;
-  input.X_WH = tick.GraspFrame();
-  input.fresh = true;
-  input.elapsed = kPeriod;
+  TickInput input = FreshInput(tick.GraspFrame(), kPeriod);
   const Vector3d outwards = input.X_WH.p.normalized();
   Vector3d before = Vector3d::Zero();
   for (int k = 0; k < 4500; ++k) {

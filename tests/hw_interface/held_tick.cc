@@ -1,5 +1,6 @@
 #include "hw_interface/held_tick.h"
 
+#include "hw_interface/tick_input.h"
 #include "support/examples.h"
 #include "vmech/hw_interface/coupling_choice.h"
 #include "vmech/hw_interface/simulated_master.h"
@@ -22,12 +23,6 @@ std::vector<MasterState> Wandering(DeviceInfo* device) {
   std::vector<MasterState> samples(kSamples);
   for (int k = 0; k < kSamples; ++k) (void)master.Read(1'000'000LL * k, &samples[k]);
   return samples;
-}
-
-VectorXd ClosedStart(const KinematicTree& tree) {
-  VectorXd q = StartCoordinates(tree);
-  if (!Assemble(tree, {}, &q).closed) std::abort();
-  return q;
 }
 
 std::unique_ptr<Tick> MakeTick(const KinematicTree& tree, int grasp, const DeviceInfo& device,
@@ -105,10 +100,7 @@ void HeldTick::ObserveOn(const MasterState& state) {
 }
 
 void HeldTick::StepOn(const MasterState& state) {
-  TickInput input;
-  input.X_WH = registration_.HandInWorld(state.X_DH);
-  input.fresh = true;
-  input.elapsed = device_.period;
+  TickInput input = FreshInput(registration_.HandInWorld(state.X_DH), device_.period);
   input.state = &state;
   input.observed = &observed_;
   wanted_ = tick_->Step(input, channels_);

@@ -1,4 +1,5 @@
 #include "vmech/hw_interface/mechanism_tick.h"
+#include "hw_interface/tick_input.h"
 
 #include <gtest/gtest.h>
 
@@ -34,21 +35,12 @@ ContactLaw Spring(double stiffness) {
 struct Held {
   Held(const Mechanism& mechanism, const std::string& grasp, MechanismTickOptions options)
       : tree(BuildKinematicTree(mechanism)),
-        tick(tree, FindGrasp(mechanism, grasp), Start(tree), FineDevice(), options),
+        tick(tree, FindGrasp(mechanism, grasp), ClosedStart(tree), FineDevice(), options),
         start(tick.GraspFrame()),
         channels(tick.ChannelNames().size()) {}
 
-  static VectorXd Start(const KinematicTree& tree) {
-    VectorXd q = StartCoordinates(tree);
-    EXPECT_TRUE(Assemble(tree, {}, &q).closed);
-    return q;
-  }
   TickOutput Step(const Posed& X_WH) {
-    TickInput input;
-    input.X_WH = X_WH;
-    input.fresh = true;
-    input.elapsed = kPeriod;
-    const TickOutput out = tick.Step(input, channels);
+    const TickOutput out = tick.Step(FreshInput(X_WH, kPeriod), channels);
     EXPECT_NE(out.status, TickStatus::kFailed);
     return out;
   }
@@ -158,7 +150,7 @@ TEST_P(EverySession, RunsWithoutAFault) {
   ContactLaw law;
   law.stiffness = LimitedGains(master.info(), wanted).stiffness;
   const int grasp = FindGrasp(mechanism, "handle");
-  const VectorXd start = Held::Start(tree);
+  const VectorXd start = ClosedStart(tree);
   MechanismTickOptions tick_options = With(law);
   tick_options.inertia = StableInertiaShare(tree, GraspFrameOf(tree, grasp), start, master.info());
   MechanismTick tick(tree, grasp, start, master.info(), tick_options);
