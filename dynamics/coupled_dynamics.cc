@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vmech/dynamics/newton_euler.h"
 #include "vmech/kinematics/forward_kinematics.h"
 #include "vmech/kinematics/rotation_error.h"
 #include "vmech/solvers/small_ldlt.h"
@@ -62,7 +61,6 @@ CoupledDynamics::CoupledDynamics(const KinematicTree& tree, const GraspFrame& gr
       coupling_A_(M_),
       limited_A_(M_),
       rootKJ_(MatrixXd::Zero(PaddedSize(6), tree.nv)),
-      mass_memory_(tree),
       q_(q),
       v_(VectorXd::Zero(tree.nv)),
       next_q_(q),
@@ -76,7 +74,6 @@ CoupledDynamics::CoupledDynamics(const KinematicTree& tree, const GraspFrame& gr
       mu_(pose_.e2()),
       d_(mu_),
       opening_(mu_),
-      applied_(tree.nodes.size()),
       joints_(tree.mechanism.joints.size()) {
   CheckRange("CoupledDynamics", "step", step, 1e-7, 1);
   RefuseUnrenderedFriction(tree);
@@ -136,14 +133,11 @@ CoupledStatus CoupledDynamics::Step(const Posed& X_WH, const Vector6d& V_WH) noe
   return status;
 }
 
-/// h(q, v), and -T C' v, of which the next velocities must make up for. Velocities are in ws.
+/// h(q, v), and -T C' v, of which the next velocities must make up for.
 void CoupledDynamics::BiasForces() noexcept {
-  TreeWorkspace<double>& ws = pose_.ws();
-  ForwardAccelerations<double>(tree_, v_.data(), nullptr, &ws);
   pose_.TakeLoopBias(&d_);
   d_ *= T_;
-  RecursiveNewtonEuler<double>(tree_, tree_.mechanism.gravity_W, applied_.data(), &ws);
-  GeneralisedForces(tree_, ws, bias_.data());
+  pose_.TakeForces(&bias_);
 }
 
 /// A v+ = right but for coupling, loops and limits.
@@ -241,10 +235,9 @@ bool CoupledDynamics::at_limit() const noexcept {
 
 /// The joints' wrenches, with the accelerations of the step.
 void CoupledDynamics::FindWrenches() noexcept {
-  TreeWorkspace<double>& ws = pose_.ws();
   vdot_ = (next_v_ - v_) / T_;
-  ForwardAccelerations<double>(tree_, v_.data(), vdot_.data(), &ws);
-  RecursiveNewtonEuler<double>(tree_, tree_.mechanism.gravity_W, applied_.data(), &ws);
+  pose_.SetAccelerations(vdot_);
+  pose_.TakeForces(&x_);
   mu_ = -system_.mu();
   pose_.LoadJoints(w_, mu_, &joints_);
 }
@@ -286,12 +279,8 @@ bool CoupledDynamics::Close() noexcept {
 
 /// Inertia, and the energies without the coupling's.
 void CoupledDynamics::TakeInertia() noexcept {
-  CompositeMassMatrix(tree_, pose_.ws(), &mass_memory_, &M_);
-  potential_ = 0;
-  for (size_t i = 0; i < tree_.nodes.size(); ++i) {
-    if (tree_.nodes[i].parent >= 0) continue;
-    potential_ -= tree_.mechanism.gravity_W.dot(mass_memory_.bodies[i].moment);
-  }
+  pose_.TakeMassMatrix(&M_);
+  potential_ = pose_.WeightEnergy();
   for (const auto& [q, v, passive, lower, upper, contact] : freedoms_) {
     const double length = q_[q] - passive.rest;
     potential_ += 0.5 * passive.stiffness * length * length;
@@ -299,7 +288,7 @@ void CoupledDynamics::TakeInertia() noexcept {
 }
 
 void CoupledDynamics::TakeVelocities() noexcept {
-  ForwardVelocities(tree_, v_.data(), &pose_.ws());
+  pose_.SetVelocities(v_);
   for (int i = 0; i < tree_.nv; ++i) momenta_[i] = Dot(&M_(0, i), v_.data(), tree_.nv);
   kinetic_ = 0.5 * Dot(momenta_.data(), v_.data(), tree_.nv);
 }

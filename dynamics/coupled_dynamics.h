@@ -3,7 +3,6 @@
 #include <limits>
 #include <vector>
 
-#include "vmech/dynamics/composite_inertia.h"
 #include "vmech/dynamics/held_pose.h"
 #include "vmech/solvers/saddle_system.h"
 
@@ -107,10 +106,9 @@ class CoupledDynamics {
   HeldPose pose_;
   SaddleSystem system_;
   MatrixXd M_, A_, coupling_A_, limited_A_, rootKJ_;
-  MassMatrixMemory mass_memory_;
   VectorXd q_, v_, next_q_, next_v_, vdot_, momenta_, bias_, right_, limited_right_, x_, mu_, d_,
       opening_;
-  std::vector<Wrenchd> applied_, joints_;
+  std::vector<Wrenchd> joints_;
   std::vector<Freedom> freedoms_;
   Posed X_WH_;
   Vector6d e1_ = Vector6d::Zero(), V_WH_ = Vector6d::Zero(), w_ = Vector6d::Zero();

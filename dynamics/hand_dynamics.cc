@@ -6,13 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "vmech/dynamics/newton_euler.h"
 #include "vmech/dynamics/passive.h"
-#include "vmech/dynamics/reactions.h"
-#include "vmech/kinematics/forward_kinematics.h"
-#include "vmech/kinematics/jacobian.h"
 #include "vmech/kinematics/linear_algebra.h"
-#include "vmech/kinematics/loops.h"
 #include "vmech/solvers/small_ldlt.h"
 
 namespace vmech {
@@ -39,7 +34,6 @@ double MeanStiffness(const Vector6d& K, double length) {
 HandDynamics::HandDynamics(const KinematicTree& tree, const GraspFrame& grasp,
                            const Vector6d& stiffness, const VectorXd& q)
     : tree_(tree),
-      grasp_(grasp),
       K_(RowsThatCount(stiffness, grasp.kind)),
       root_K_(K_.cwiseSqrt()),
       pose_(tree, grasp),
@@ -55,7 +49,6 @@ HandDynamics::HandDynamics(const KinematicTree& tree, const GraspFrame& grasp,
       right_(v_),
       d_(pose_.e2()),
       none_(d_),
-      applied_(tree.nodes.size()),
       joints_(tree.mechanism.joints.size()),
       spring_length_(tree.nv, 0.0) {
   RefuseUnrenderedFriction(tree);
@@ -84,17 +77,14 @@ void HandDynamics::RefuseIdleFreedoms() const {
 
 bool HandDynamics::Evaluate(const Vector6d& V_WG, const Vector6d& A_WG, double inertia) noexcept {
   if (!Factor()) return false;
-  TreeWorkspace<double>& ws = pose_.ws();
   SolveMotion(V_WG, none_, &v_);
   // s (M v' + c(q, v)) = M (s v') + c(q, s^1/2 v).
   felt_v_ = std::sqrt(inertia) * v_;
-  ForwardVelocities(tree_, felt_v_.data(), &ws);
-  ForwardAccelerations<double>(tree_, felt_v_.data(), nullptr, &ws);
+  pose_.SetVelocities(felt_v_);
   pose_.TakeLoopBias(&d_);
-  SolveMotion(inertia * A_WG - PointAcceleration(ws, grasp_.node, pose_.X_WG().p), d_, &vdot_);
-  ForwardAccelerations<double>(tree_, felt_v_.data(), vdot_.data(), &ws);
-  RecursiveNewtonEuler<double>(tree_, tree_.mechanism.gravity_W, applied_.data(), &ws);
-  GeneralisedForces(tree_, ws, tau_.data());
+  SolveMotion(inertia * A_WG - pose_.GraspBias(), d_, &vdot_);
+  pose_.SetAccelerations(vdot_);
+  pose_.TakeForces(&tau_);
   PassiveForces();
   system_.Solve(pose_.C(), tau_, none_, &x_);
   w_d_ = K_.cwiseProduct(pose_.Twist(x_));

@@ -58,13 +58,12 @@ class HandDynamics {
   void RefuseIdleFreedoms() const;
 
   const KinematicTree& tree_;
-  GraspFrame grasp_;
   Vector6d K_, root_K_;
   HeldPose pose_;
   SaddleSystem system_;
   MatrixXd rootKJ_, A_;
   VectorXd q_, v_, felt_v_, vdot_, tau_, x_, right_, d_, none_;
-  std::vector<Wrenchd> applied_, joints_;
+  std::vector<Wrenchd> joints_;
   std::vector<double> spring_length_;  // per velocity: q - rest
   Vector6d w_d_ = Vector6d::Zero();
 };

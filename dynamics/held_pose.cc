@@ -5,22 +5,32 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "vmech/dynamics/reactions.h"
-#include "vmech/kinematics/forward_kinematics.h"
 #include "vmech/kinematics/loops.h"
+#include "vmech/kinematics/screw_algebra.h"
 #include "vmech/solvers/small_ldlt.h"
 
 namespace vmech {
+namespace {
+
+/// About the origin and in the axes of X.
+Wrenchd WrenchIn(const Axes& X, const Screw& W) {
+  const Four moment = W.angular - Cross(X.p, W.linear);
+  return {Vector3Of(TurnedBack(X, W.linear)), Vector3Of(TurnedBack(X, moment))};
+}
+
+}  // namespace
 
 HeldPose::HeldPose(const KinematicTree& tree, const GraspFrame& grasp)
     : tree_(tree),
       grasp_(grasp),
       row_scale_(LoopRowScale(tree)),
       ws_(tree),
+      inertias_(tree),
       J_(Matrix6Xd::Zero(6, tree.nv)),
       C_(MatrixXd::Zero(PaddedSize(tree.rows), tree.nv)),
-      e2_(VectorXd::Zero(C_.rows())),
-      mu_(VectorXd::Zero(tree.rows)) {}
+      e2_(VectorXd::Zero(C_.rows())) {
+  FallUpwards(tree.mechanism.gravity_W, &ws_);
+}
 
 const Posed& HeldPose::Set(const VectorXd& q) noexcept {
   SetLoops(q);
@@ -33,25 +43,32 @@ void HeldPose::SetLoops(const VectorXd& q) noexcept {
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
     const Loop& loop = tree_.loops[l];
     for (int i = loop.row, k = 0; k < loop.rows; ++i, ++k) {
-      e2_[i] = row_scale_[i] * ws_.loops[l].e2[k];
+      e2_[i] = row_scale_[i] * ws_.loops[l].state.e2[k];
     }
   }
 }
 
 const Posed& HeldPose::SetJacobians() noexcept {
-  X_WG_ = PoseInWorld(ws_, grasp_.node, grasp_.X_BG);
-  PointJacobian(tree_, ws_, grasp_.node, X_WG_.p, &J_);
-  LoopJacobian(tree_, &ws_);
-  const Vector6d* column = ws_.loop_columns.data();
-  for (const Loop& loop : tree_.loops) {
+  JointScrews(tree_, &ws_);
+  BodyInertias(tree_, ws_, &inertias_);
+  const Axes G = ws_.at(grasp_.node).X * grasp_.X_BG;
+  X_WG_ = PoseOf(G);
+  PointJacobian(tree_, ws_, grasp_.node, G.p, &J_);
+  LoopWrenches(tree_, row_scale_.data(), &ws_);
+  for (size_t l = 0; l < tree_.loops.size(); ++l) {
+    const Loop& loop = tree_.loops[l];
     for (const LoopColumn& c : loop.columns) {
-      for (int i = loop.row, k = 0; k < loop.rows; ++i, ++k) {
-        C_(i, c.v) = row_scale_[i] * (*column)[k];
+      double* column = &C_(loop.row, c.v);
+      for (int k = 0; k < loop.rows; ++k) {
+        column[k] = c.sign * Power(ws_.loops[l].rows[k], ws_.S[c.v]);
       }
-      ++column;
     }
   }
   return X_WG_;
+}
+
+Posed HeldPose::X_WB(int node) const noexcept {
+  return PoseOf(ws_.at(node).X);
 }
 
 Vector6d HeldPose::Twist(const VectorXd& v) const noexcept {
@@ -64,61 +81,66 @@ void HeldPose::AddForces(const Vector6d& w_Go, VectorXd* tau) const noexcept {
   for (int i = 0; i < tree_.nv; ++i) (*tau)[i] += J_.col(i).dot(w_Go);
 }
 
+void HeldPose::TakeMassMatrix(MatrixXd* M) noexcept {
+  CompositeMassMatrix(tree_, ws_, &inertias_, M);
+}
+
+void HeldPose::SetVelocities(const VectorXd& v) noexcept {
+  ForwardVelocities(tree_, v.data(), &ws_);
+}
+
 void HeldPose::TakeLoopBias(VectorXd* d) noexcept {
-  LoopAccelerationBias(tree_, &ws_);
+  VelocityProducts(tree_, &ws_);
+  GyroscopicWrenches(tree_, inertias_, &ws_);
+  ForwardAccelerations(tree_, nullptr, &ws_);
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
-    const Loop& loop = tree_.loops[l];
-    for (int i = loop.row, k = 0; k < loop.rows; ++i, ++k) {
-      (*d)[i] = -row_scale_[i] * ws_.loops[l].bias[k];
-    }
+    LoopBias(tree_, ws_, static_cast<int>(l), d->data() + tree_.loops[l].row);
   }
+  *d = -*d;
+}
+
+Vector6d HeldPose::GraspBias() const noexcept {
+  const ScrewWorkspace::Node& node = ws_.at(grasp_.node);
+  const Screw A = node.A - ws_.at(-1).A;
+  const Four p = FourOf(X_WG_.p);
+  const Four a = VelocityAt(p, A) + Cross(node.V.angular, VelocityAt(p, node.V));
+  return Stacked<double>(Vector3Of(a), Vector3Of(A.angular));
+}
+
+void HeldPose::SetAccelerations(const VectorXd& vdot) noexcept {
+  ForwardAccelerations(tree_, vdot.data(), &ws_);
+}
+
+void HeldPose::TakeForces(VectorXd* tau) noexcept {
+  NewtonEuler(tree_, inertias_, &ws_);
+  GeneralisedForces(tree_, ws_, tau->data());
 }
 
 void HeldPose::LoadJoints(const Vector6d& w_hand, const VectorXd& mu,
                           std::vector<Wrenchd>* joints) noexcept {
-  const Wrenchd hand{w_hand.head<3>(), w_hand.tail<3>()};
-  for (int n = grasp_.node; n >= 0; n = tree_.nodes[n].parent) {
-    NodeState<double>& node = ws_.nodes[n];
-    node.F_Bo -= hand.ShiftedBy(X_WG_.p - node.X_WB.p);
+  const Screw hand = WrenchAt(FourOf(X_WG_.p), FourOf(w_hand.head<3>()), FourOf(w_hand.tail<3>()));
+  for (int n = grasp_.node; n >= 0; n = tree_.nodes[n].parent) ws_.at(n).F -= hand;
+  for (size_t l = 0; l < tree_.loops.size(); ++l) {
+    const Loop& loop = tree_.loops[l];
+    const LoopScrews& s = ws_.loops[l];
+    Screw W;
+    for (int k = 0; k < loop.rows; ++k) W += mu[loop.row + k] * s.rows[k];
+    for (const LoopNode& n : loop.path) ws_.at(n.node).F -= n.sign * W;
+    (*joints)[loop.joint] = WrenchIn(s.F, W);
   }
-  for (int i = 0; i < tree_.rows; ++i) mu_[i] = row_scale_[i] * mu[i];
-  AddMultiplierWrenches(tree_, mu_.data(), &ws_);
   for (size_t j = 0; j < joints->size(); ++j) {
     const JointPlacement& place = tree_.placements[j];
     if (place.tree_node < 0) continue;
-    const Matrix3d R_WF = PoseInWorld(ws_, place.first_node, place.X_AF).R;
-    const Vector3d p_WM = PoseInWorld(ws_, place.second_node, place.X_BM).p;
-    const NodeState<double>& node = ws_.nodes[place.tree_node];
-    const Wrenchd W = node.F_Bo.ShiftedBy(node.X_WB.p - p_WM);
-    (*joints)[j] = (tree_.nodes[place.tree_node].reversed ? -W : W).In(R_WF);
-  }
-  for (size_t l = 0; l < tree_.loops.size(); ++l) {
-    const Loop& loop = tree_.loops[l];
-    (*joints)[loop.joint] = WrenchOfMultipliers(loop, ws_.loops[l], mu_.data() + loop.row);
+    const Axes F = ws_.at(place.first_node).X * place.X_AF;
+    const Four p_WM = PointInWorld(ws_.at(place.second_node).X, place.X_BM.p);
+    const Screw& W = ws_.at(place.tree_node).F;
+    const double sign = tree_.nodes[place.tree_node].reversed ? -1 : 1;
+    (*joints)[j] = WrenchIn({F.x, F.y, F.z, p_WM}, sign * W);
   }
 }
 
 double HeldPose::KineticEnergy() const noexcept {
-  double energy = 0;
-  for (size_t i = 0; i < tree_.nodes.size(); ++i) {
-    const TreeNode& node = tree_.nodes[i];
-    if (node.link < 0) continue;
-    const NodeState<double>& s = ws_.nodes[i];
-    const Vector3d v_cm = s.v + s.w.cross(s.X_WB.R * node.p_BoBcm);
-    const Vector3d w_B = s.X_WB.R.transpose() * s.w;
-    energy += 0.5 * (node.mass * v_cm.squaredNorm() + w_B.dot(node.I_Bcm * w_B));
-  }
-  return energy;
-}
-
-double HeldPose::WeightEnergy() const noexcept {
-  double energy = 0;
-  for (size_t i = 0; i < tree_.nodes.size(); ++i) {
-    const TreeNode& node = tree_.nodes[i];
-    if (node.link < 0) continue;
-    energy -= node.mass * tree_.mechanism.gravity_W.dot(ws_.nodes[i].X_WB * node.p_BoBcm);
-  }
-  return energy;
+  return vmech::KineticEnergy(tree_, inertias_, ws_);
 }
 
 void RefuseUnrenderedFriction(const KinematicTree& tree) {

@@ -2,9 +2,8 @@
 
 #include <vector>
 
+#include "vmech/dynamics/screw_dynamics.h"
 #include "vmech/kinematics/inverse_kinematics.h"
-#include "vmech/kinematics/jacobian.h"
-#include "vmech/kinematics/tree_workspace.h"
 
 namespace vmech {
 
@@ -24,42 +23,54 @@ class HeldPose {
   const Posed& Set(const VectorXd& q) noexcept;
   /// The first half of Set, nodes and loop errors, as needed between two steps of a closure.
   void SetLoops(const VectorXd& q) noexcept;
-  /// The other half: grasp frame and Jacobians.
+  /// The other half: grasp frame, Jacobians and inertias.
   const Posed& SetJacobians() noexcept;
 
   const Posed& X_WG() const noexcept { return X_WG_; }
+  Posed X_WB(int node) const noexcept;
   const Matrix6Xd& J() const noexcept { return J_; }  ///< [6, nv], V_WG = J v
   /// [rows, nv], C v = 0; lengths over the characteristic length, padded with rows of zeros.
   const MatrixXd& C() const noexcept { return C_; }
   const VectorXd& e2() const noexcept { return e2_; }  ///< loop errors, scaled and padded like C
-  TreeWorkspace<double>& ws() noexcept { return ws_; }
-  const TreeWorkspace<double>& ws() const noexcept { return ws_; }
 
   Vector6d Twist(const VectorXd& v) const noexcept;                    ///< J v
   void AddForces(const Vector6d& w_Go, VectorXd* tau) const noexcept;  ///< tau += J'w
-  /// d = -C' v, scaled and padded like C. Needs ForwardAccelerations(vdot = nullptr) in ws.
-  void TakeLoopBias(VectorXd* d) noexcept;
 
+  /// M [nv, nv].
+  void TakeMassMatrix(MatrixXd* M) noexcept;
+  /// Takes v [nv].
+  void SetVelocities(const VectorXd& v) noexcept;
+  /// Takes v' [nv].
+  void SetAccelerations(const VectorXd& vdot) noexcept;
+
+  // At the velocities taken last.
+  double KineticEnergy() const noexcept;  ///< [J]
+  /// Takes v' = 0 and returns what is left: d = -C' v, scaled and padded like C.
+  void TakeLoopBias(VectorXd* d) noexcept;
+  /// The acceleration of Go there.
+  Vector6d GraspBias() const noexcept;
+
+  /// M v' + h [nv], at the accelerations taken last.
+  void TakeForces(VectorXd* tau) noexcept;
   /// Joint by joint of the mechanism, what the first link exerts on the second about the second
-  /// anchor's origin, axes of the first anchor. Needs F_Bo of RecursiveNewtonEuler in ws, which it
-  /// relieves of the hand's wrench at Go and of the multipliers of tau = J' w + C' mu.
+  /// anchor's origin, axes of the first anchor, at the forces taken last less the hand's wrench
+  /// at Go and the multipliers of tau = J' w + C' mu. Once after TakeForces.
   void LoadJoints(const Vector6d& w_hand, const VectorXd& mu,
                   std::vector<Wrenchd>* joints) noexcept;
 
-  /// At the velocities in ws [J].
-  double KineticEnergy() const noexcept;
   /// Zero with all centres of gravity at the height of Wo [J].
-  double WeightEnergy() const noexcept;
+  double WeightEnergy() const noexcept { return vmech::WeightEnergy(tree_, inertias_); }
 
  private:
   const KinematicTree& tree_;
   GraspFrame grasp_;
   VectorXd row_scale_;
-  TreeWorkspace<double> ws_;
+  ScrewWorkspace ws_;
+  ScrewInertias inertias_;
   Posed X_WG_;
   Matrix6Xd J_;
   MatrixXd C_;
-  VectorXd e2_, mu_;
+  VectorXd e2_;
 };
 
 /// Friction in proportion to a joint's load, and springs or friction at a cut joint, are beyond

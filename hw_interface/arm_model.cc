@@ -4,8 +4,7 @@
 
 #include <stdexcept>
 
-#include "vmech/dynamics/newton_euler.h"
-#include "vmech/kinematics/forward_kinematics.h"
+#include "vmech/kinematics/screw_algebra.h"
 
 namespace vmech {
 namespace {
@@ -30,30 +29,39 @@ std::shared_ptr<const ArmDescription> Checked(std::shared_ptr<const ArmDescripti
 ArmModel::ArmModel(std::shared_ptr<const ArmDescription> arm)
     : arm_(Checked(std::move(arm))),
       ws_(arm_->tree),
-      mass_memory_(arm_->tree),
-      applied_(arm_->tree.nodes.size()),
+      inertias_(arm_->tree),
       J_(Matrix6Xd::Zero(6, joints())),
       M_(MatrixXd::Zero(joints(), joints())),
       bias_(VectorXd::Zero(joints())),
       rest_(VectorXd::Zero(joints())),
       acceleration_(VectorXd::Zero(joints())),
       factor_(MatrixXd::Identity(joints(), joints())) {  // one not computed yet cannot be copied
+  FallUpwards(arm_->tree.mechanism.gravity_W, &ws_);
   SetPosture(arm_->posture.data());
 }
 
 void ArmModel::SetPosture(const double* q) noexcept {
   ForwardKinematics(arm_->tree, q, &ws_);
-  X_DH_ = PoseInWorld(ws_, arm_->handle_node, arm_->X_BH);
-  PointJacobian(arm_->tree, ws_, arm_->handle_node, X_DH_.p, &J_);
+  JointScrews(arm_->tree, &ws_);
+  BodyInertias(arm_->tree, ws_, &inertias_);
+  X_DH_ = PoseOf(ws_.at(arm_->handle_node).X * arm_->X_BH);
 }
 
+const Matrix6Xd& ArmModel::J() noexcept {
+  PointJacobian(arm_->tree, ws_, arm_->handle_node, FourOf(X_DH_.p), &J_);
+  return J_;
+}
+
+/// h(q, v) - J'F.
 void ArmModel::BiasForces(const VectorXd& v, const Wrenchd& F_Ho) noexcept {
-  const Posed& X_DB = ws_.nodes[arm_->handle_node].X_WB;
-  applied_[arm_->handle_node] = F_Ho.ShiftedBy(X_DH_.p - X_DB.p);
-  ForwardVelocities(arm_->tree, v.data(), &ws_);
-  ForwardAccelerations<double>(arm_->tree, v.data(), nullptr, &ws_);
-  RecursiveNewtonEuler<double>(arm_->tree, arm_->tree.mechanism.gravity_W, applied_.data(), &ws_);
-  GeneralisedForces(arm_->tree, ws_, bias_.data());
+  const KinematicTree& tree = arm_->tree;
+  ForwardVelocities(tree, v.data(), &ws_);
+  VelocityProducts(tree, &ws_);
+  ForwardAccelerations(tree, nullptr, &ws_);
+  GyroscopicWrenches(tree, inertias_, &ws_);
+  NewtonEuler(tree, inertias_, &ws_);
+  GeneralisedForces(tree, ws_, bias_.data());
+  bias_.noalias() -= J().transpose() * F_Ho.Stacked();
 }
 
 const VectorXd& ArmModel::GravityTorques() noexcept {
@@ -62,40 +70,18 @@ const VectorXd& ArmModel::GravityTorques() noexcept {
 }
 
 const MatrixXd& ArmModel::MassMatrix() noexcept {
-  CompositeMassMatrix(arm_->tree, ws_, &mass_memory_, &M_);
+  CompositeMassMatrix(arm_->tree, ws_, &inertias_, &M_);
   return M_;
 }
 
 void ArmModel::Momenta(const double* v, double* momenta) noexcept {
-  const KinematicTree& tree = arm_->tree;
-  ForwardVelocities(tree, v, &ws_);
-  for (size_t i = 0; i < tree.nodes.size(); ++i) {
-    const TreeNode& node = tree.nodes[i];
-    NodeState<double>& s = ws_.nodes[i];
-    const Matrix3d& R = s.X_WB.R;
-    const Vector3d c = R * node.p_BoBcm;
-    const Vector3d linear = node.mass * (s.v + s.w.cross(c));
-    const Vector3d w_B = R.transpose() * s.w, angular_B = node.I_Bcm * w_B;
-    s.F_Bo = {linear, R * angular_B + c.cross(linear)};
-  }
-  for (size_t i = tree.nodes.size(); i-- > 0;) {
-    const NodeState<double>& s = ws_.nodes[i];
-    const int parent = tree.nodes[i].parent;
-    if (parent < 0) continue;
-    NodeState<double>& p = ws_.nodes[parent];
-    p.F_Bo += s.F_Bo.ShiftedBy(s.X_WB.p - p.X_WB.p);
-  }
-  GeneralisedForces(tree, ws_, momenta);
+  ForwardVelocities(arm_->tree, v, &ws_);
+  vmech::Momenta(arm_->tree, inertias_, &ws_);
+  GeneralisedForces(arm_->tree, ws_, momenta);
 }
 
 double ArmModel::PotentialEnergy() const noexcept {
-  const Vector3d& gravity = arm_->tree.mechanism.gravity_W;
-  double energy = 0;
-  for (size_t i = 0; i < ws_.nodes.size(); ++i) {
-    const TreeNode& node = arm_->tree.nodes[i];
-    energy -= node.mass * gravity.dot(ws_.nodes[i].X_WB * node.p_BoBcm);
-  }
-  return energy;
+  return WeightEnergy(arm_->tree, inertias_);
 }
 
 const VectorXd& ArmModel::Accelerations(const VectorXd& v, const VectorXd& torque,

@@ -4,10 +4,9 @@
 #include <memory>
 #include <vector>
 
-#include "vmech/dynamics/composite_inertia.h"
+#include "vmech/dynamics/screw_dynamics.h"
 #include "vmech/kinematics/jacobian.h"
 #include "vmech/kinematics/kinematic_tree.h"
-#include "vmech/kinematics/tree_workspace.h"
 
 namespace vmech {
 
@@ -41,7 +40,9 @@ class ArmModel {
   void SetPosture(const double* q) noexcept;
 
   const Posed& X_DH() const noexcept { return X_DH_; }
-  const Matrix6Xd& J() const noexcept { return J_; }  ///< [6, joints], about Ho, axes of D
+  const Matrix6Xd& J() noexcept;  ///< [6, joints], about Ho, axes of D
+  /// Columns of J about Do [joints].
+  const std::vector<Screw>& S() const noexcept { return ws_.S; }
 
   /// The torques that hold the arm still against gravity, h(q, 0).
   const VectorXd& GravityTorques() noexcept;
@@ -61,9 +62,8 @@ class ArmModel {
   void BiasForces(const VectorXd& v, const Wrenchd& F_Ho) noexcept;
 
   std::shared_ptr<const ArmDescription> arm_;
-  TreeWorkspace<double> ws_;
-  MassMatrixMemory mass_memory_;
-  std::vector<Wrenchd> applied_;
+  ScrewWorkspace ws_;
+  ScrewInertias inertias_;
   Posed X_DH_;
   Matrix6Xd J_;
   MatrixXd M_;

@@ -4,13 +4,16 @@
 #include <array>
 #include <cmath>
 
+#include "vmech/kinematics/screw_algebra.h"
 #include "vmech/solvers/small_ldlt.h"
 #include "vmech/solvers/stopping_rule.h"
 
 namespace vmech {
 namespace {
 
-constexpr int kPaddedRows = PaddedSize(6);
+constexpr int kTwistRows[] = {0, 1, 2, 4, 5, 6};  // that are not padding
+constexpr int kPaddedRows = 8;
+static_assert(sizeof(Screw) == kPaddedRows * sizeof(double));
 
 }  // namespace
 
@@ -45,7 +48,9 @@ void ArmTorques::Resolve(const MasterState& state, bool fresh,
     const double v = velocity_[i].Update(state.q[i]).v;
     posture_torque_[i] = options_.stiffness * (q_0[i] - state.q[i]) - options_.damping * v;
   }
-  for (int i = 0; i < arm_.joints(); ++i) torque_[i] = arm_.J().col(i).dot(command->F_Ho_D);
+  const Vector6d& F = command->F_Ho_D;
+  const Screw F_Do = WrenchAt(FourOf(arm_.X_DH().p), FourOf(F.head<3>()), FourOf(F.tail<3>()));
+  for (int i = 0; i < arm_.joints(); ++i) torque_[i] = Power(F_Do, arm_.S()[i]);
   const int count = FindFreeMotions();
   for (int k = 0; k < count; ++k) {
     auto n_k = free_.col(k);
@@ -73,13 +78,16 @@ int ArmTorques::FindFreeMotions() noexcept {
   double square = 0;
   for (int j = 0; j < n; ++j) {
     column[j] = reduced_.col(j).data();
-    std::copy_n(arm_.J().col(j).data(), 6, column[j]);
-    square += Dot(column[j], column[j], kPaddedRows);
+    const Screw& S = arm_.S()[j];
+    StoreFour(S.linear, column[j]);
+    StoreFour(S.angular, column[j] + 4);
+    square += Power(S, S);
   }
   const double singular = kSingular * std::sqrt(square);
   std::array<int, 6> pivot_row;
   int rank = 0;
-  for (int row = 0; row < 6 && rank < n; ++row) {
+  for (int row : kTwistRows) {
+    if (rank == n) break;
     int at = rank;
     double largest = std::abs(column[rank][row]);
     for (int j = rank + 1; j < n; ++j) {

@@ -42,7 +42,7 @@ CoupledStatus ClosingHand::Step(const Posed& X_WH, const Vector6d& V_WH,
   share << Vector3d::Constant(ShareOf(pull.head<3>().norm(), hold_)),
       Vector3d::Constant(ShareOf(pull.tail<3>().norm(), kLever * hold_));
   if (share.minCoeff() < 1) {
-    const Posed& X_WB = dynamics->pose().ws().nodes[grasp.node].X_WB;
+    const Posed X_WB = dynamics->pose().X_WB(grasp.node);
     const Posed X_WG = Displaced(dynamics->X_WG(), e - share.cwiseProduct(e));
     dynamics->TakeHold({grasp.node, X_WB.inverse() * X_WG, grasp.kind});
   }

@@ -74,7 +74,7 @@ bool CoupledTick::TakeHold(const Posed& X_WH) noexcept {
   for (size_t l = 0; l < tree_.mechanism.links.size(); ++l) {
     const int node = tree_.NodeOfLink(static_cast<int>(l));
     if (node < 0) continue;
-    const Posed& X_WB = dynamics_.pose().ws().nodes[node].X_WB;
+    const Posed X_WB = dynamics_.pose().X_WB(node);
     const Posed X_BH = X_WB.inverse() * X_WH;
     const Posed X_BL = tree_.X_node_link(static_cast<int>(l));
     const double distance = DistanceToLink(tree_.mechanism.links[l], X_BL.inverse() * X_BH.p);

@@ -13,18 +13,8 @@ void TakeSines(const KinematicTree& tree, const Packet* q, TreeWorkspace<Packet>
   for (int k = 0; k < tree.nq; ++k) SinCos(q[k], &ws->sine[k], &ws->cosine[k]);
 }
 
-/// Four at a time.
 void TakeSines(const KinematicTree& tree, const double* q, TreeWorkspace<double>* ws) {
-  for (int k = 0; k < tree.nq; k += Packet::kLanes) {
-    const int count = std::min(Packet::kLanes, tree.nq - k);
-    const Packet angle = Packet::Of([&](int lane) { return lane < count ? q[k + lane] : 0.0; });
-    Packet sine, cosine;
-    SinCos(angle, &sine, &cosine);
-    for (int lane = 0; lane < count; ++lane) {
-      ws->sine[k + lane] = sine[lane];
-      ws->cosine[k + lane] = cosine[lane];
-    }
-  }
+  Sines(q, tree.nq, ws->sine.data(), ws->cosine.data());
 }
 
 /// R Rz(angle).
@@ -35,17 +25,6 @@ Matrix3<T> TurnedAboutZ(const Matrix3<T>& R, const T& s, const T& c) {
   turned.col(1) = c * R.col(1) - s * R.col(0);
   turned.col(2) = R.col(2);
   return turned;
-}
-
-/// The rotation of a unit quaternion (w, x, y, z).
-template <typename T>
-Matrix3<T> RotationOf(const T* wxyz) {
-  const T &w = wxyz[0], &x = wxyz[1], &y = wxyz[2], &z = wxyz[3];
-  Matrix3<T> R;
-  R << 1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y),  //
-      2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x),   //
-      2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y);
-  return R;
 }
 
 /// The relative velocity of a node in its parent, world axes.
@@ -89,6 +68,20 @@ RelativeMotion<T> MotionAcross(const TreeNode& node, const Pose<T>& X_WB, const 
 }
 
 }  // namespace
+
+void Sines(const double* angles, int count, double* sine, double* cosine) noexcept {
+  for (int k = 0; k < count; k += Packet::kLanes) {
+    const int lanes = std::min(Packet::kLanes, count - k);
+    const Packet angle =
+        Packet::Of([&](int lane) { return lane < lanes ? angles[k + lane] : 0.0; });
+    Packet s, c;
+    SinCos(angle, &s, &c);
+    for (int lane = 0; lane < lanes; ++lane) {
+      sine[k + lane] = s[lane];
+      cosine[k + lane] = c[lane];
+    }
+  }
+}
 
 template <typename T>
 void ForwardKinematics(const KinematicTree& tree, const T* q, TreeWorkspace<T>* ws) {

@@ -8,6 +8,13 @@ namespace vmech {
 template <typename T>
 void ForwardKinematics(const KinematicTree& tree, const T* q, TreeWorkspace<T>* ws);
 
+/// Sine and cosine of `count` numbers, four at a time.
+void Sines(const double* angles, int count, double* sine, double* cosine) noexcept;
+
+/// The rotation of a unit quaternion (w, x, y, z).
+template <typename T>
+Matrix3<T> RotationOf(const T* wxyz);
+
 /// Velocities of all nodes from v [nv]. Needs X_WB; writes w, v.
 template <typename T>
 void ForwardVelocities(const KinematicTree& tree, const T* v, TreeWorkspace<T>* ws);
@@ -45,6 +52,16 @@ Vector6<T> UnitTwistAt(const KinematicTree& tree, const TreeWorkspace<T>& ws, in
                        int axis, const Vector3<T>& p_WQ);
 
 // Small and everywhere: inline.
+
+template <typename T>
+Matrix3<T> RotationOf(const T* wxyz) {
+  const T &w = wxyz[0], &x = wxyz[1], &y = wxyz[2], &z = wxyz[3];
+  Matrix3<T> R;
+  R << 1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y),  //
+      2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x),   //
+      2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y);
+  return R;
+}
 
 template <typename T>
 Pose<T> PoseInWorld(const TreeWorkspace<T>& ws, int node, const Posed& X_BQ) {

@@ -50,10 +50,6 @@ std::vector<Elementary> Decompose(JointType type) {
   return {};
 }
 
-int VelocitiesOf(NodeMotion motion) {
-  return motion == NodeMotion::kFixed ? 0 : motion == NodeMotion::kSpherical ? 3 : 1;
-}
-
 Posed Turned(const Matrix3d& R) {
   return {R, Vector3d::Zero()};
 }

@@ -20,6 +20,11 @@ namespace vmech {
 
 enum class NodeMotion { kFixed, kRevolute, kPrismatic, kScrew, kSpherical };
 
+/// Entries in v.
+inline int VelocitiesOf(NodeMotion motion) {
+  return motion == NodeMotion::kFixed ? 0 : motion == NodeMotion::kSpherical ? 3 : 1;
+}
+
 struct TreeNode {
   int parent = -1;  ///< index of a node before this one; -1 is the ground
   NodeMotion motion = NodeMotion::kFixed;

@@ -2,19 +2,13 @@
 
 #include <cstring>
 
+#include "vmech/solvers/four.h"
+
 namespace vmech {
 
 // Kernels for some ten unknowns, where calls cost more than the arithmetic behind them. Matrices
 // are column by column without gaps. Where the size is given as kSize it is not looked at, and the
 // compiler unrolls: twice as fast for the few unknowns of one loop. kSize = 0 is for any size.
-
-/// Four numbers of a column.
-using Four = double __attribute__((vector_size(32)));
-
-/// The size of a column that is filled up to whole registers.
-constexpr int PaddedSize(int size) {
-  return (size + 3) / 4 * 4;
-}
 
 inline Four LoadFour(const double* x) noexcept {
   Four four;

@@ -105,23 +105,6 @@ TEST_F(SarcosArm, HandMassMovesWithTheHandle) {
             kIdentity);
 }
 
-class EveryOpenTree : public testing::TestWithParam<std::string> {};
-
-TEST_P(EveryOpenTree, CompositeMassMatrixIsThatOfTheKineticEnergy) {
-  Random random(3);
-  const KinematicTree tree = BuildKinematicTree(Example(GetParam()));
-  const VectorXd q = RandomCoordinates(tree, &random);
-  TreeWorkspace<double> ws(tree);
-  EvaluatePose(tree, q, &ws, false);
-  MassMatrixMemory memory(tree);
-  MatrixXd M(tree.nv, tree.nv);
-  CompositeMassMatrix(tree, ws, &memory, &M);
-  EXPECT_LT((M - MassMatrix(tree, q)).norm(), kIdentity * M.norm());
-}
-
-INSTANTIATE_TEST_SUITE_P(Examples, EveryOpenTree, testing::ValuesIn(ExampleNames()),
-                         [](const auto& info) { return TestName(info.param); });
-
 TEST(ArmModel, RefusesAClosedLoop) {
   ArmDescription arm;
   arm.tree = BuildKinematicTree(Example("four-bar"));

@@ -110,8 +110,7 @@ TEST(CoupledTick, TakesHoldOfTheNearestLinkWhereTheHandIs) {
     const int link = FindLink(four_bar, name);
     const int node = held.tree.NodeOfLink(link);
     const std::vector<Anchor>& anchors = four_bar.links[link].anchors;
-    const Posed X_WL =
-        held.tick->dynamics().pose().ws().nodes[node].X_WB * held.tree.X_node_link(link);
+    const Posed X_WL = held.tick->dynamics().pose().X_WB(node) * held.tree.X_node_link(link);
     Posed X_WH = X_WL;
     X_WH.p = X_WL * (0.5 * (anchors[0].X_LA.p + anchors[1].X_LA.p)) + Vector3d(0, 0, 0.01);
     ASSERT_TRUE(held.tick->TakeHold(X_WH));

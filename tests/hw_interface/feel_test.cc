@@ -88,7 +88,7 @@ double PotentialEnergy(const KinematicTree& tree, const VectorXd& q) {
   double energy = 0;
   for (size_t i = 0; i < tree.nodes.size(); ++i) {
     const TreeNode& node = tree.nodes[i];
-    const Posed& X_WB = pose.ws().nodes[i].X_WB;
+    const Posed X_WB = pose.X_WB(static_cast<int>(i));
     energy -= node.mass * tree.mechanism.gravity_W.dot(X_WB * node.p_BoBcm);
     if (node.v < 0 || node.motion == NodeMotion::kSpherical) continue;
     const Passive& spring = tree.mechanism.joints[node.joint].passive[node.freedom];

@@ -1,0 +1,113 @@
+#include "vmech/dynamics/screw_dynamics.h"
+
+#include <algorithm>
+
+#include "vmech/kinematics/screw_algebra.h"
+
+namespace vmech {
+namespace {
+
+ScrewInertia InertiaInWorld(const TreeNode& node, const Axes& X) {
+  const Four c = PointInWorld(X, node.p_BoBcm), mc = node.mass * c;
+  // R I R', and the parallel axes: I + m (c'c - c c').
+  const Axes RI = Turned(X, node.I_Bcm, c);
+  const double square = Dot(c, mc);
+  const auto column = [&](int k) { return Turned(RI, X.x[k], X.y[k], X.z[k]) - c[k] * mc; };
+  return {node.mass, mc, column(0) + Four{square, 0, 0, 0}, column(1) + Four{0, square, 0, 0},
+          column(2) + Four{0, 0, square, 0}};
+}
+
+/// Every node carries its children.
+void HandOn(const KinematicTree& tree, ScrewWorkspace* ws) {
+  ws->nodes[0].F = {};
+  for (size_t i = tree.nodes.size(); i-- > 0;) {
+    ws->at(tree.nodes[i].parent).F += ws->nodes[i + 1].F;
+  }
+}
+
+}  // namespace
+
+void FallUpwards(const Vector3d& gravity_W, ScrewWorkspace* ws) noexcept {
+  ws->nodes[0].A.linear = -FourOf(gravity_W);
+}
+
+void BodyInertias(const KinematicTree& tree, const ScrewWorkspace& ws,
+                  ScrewInertias* inertias) noexcept {
+  for (size_t i = 0; i < tree.nodes.size(); ++i) {
+    if (tree.nodes[i].link < 0) continue;
+    inertias->bodies[i + 1] = InertiaInWorld(tree.nodes[i], ws.nodes[i + 1].X);
+  }
+}
+
+void CompositeMassMatrix(const KinematicTree& tree, const ScrewWorkspace& ws,
+                         ScrewInertias* inertias, MatrixXd* M) noexcept {
+  std::fill_n(M->data(), M->size(), 0.0);
+  std::copy(inertias->bodies.begin(), inertias->bodies.end(), inertias->composite.begin());
+  for (int i = static_cast<int>(tree.nodes.size()); i-- > 0;) {
+    const TreeNode& node = tree.nodes[i];
+    const ScrewInertia& carried = inertias->composite[i + 1];
+    for (int v = node.v; v < node.v + VelocitiesOf(node.motion); ++v) {
+      const Screw momentum = carried * ws.S[v];
+      for (int j = i; j >= 0; j = tree.nodes[j].parent) {
+        const TreeNode& below = tree.nodes[j];
+        for (int u = below.v; u < below.v + VelocitiesOf(below.motion); ++u) {
+          (*M)(u, v) = (*M)(v, u) = Power(momentum, ws.S[u]);
+        }
+      }
+    }
+    inertias->composite[node.parent + 1] += carried;
+  }
+}
+
+void GyroscopicWrenches(const KinematicTree& tree, const ScrewInertias& inertias,
+                        ScrewWorkspace* ws) noexcept {
+  for (size_t i = 0; i < tree.nodes.size(); ++i) {
+    if (tree.nodes[i].link < 0) continue;
+    ScrewWorkspace::Node& s = ws->nodes[i + 1];
+    s.p = CarriedWrench(s.V, inertias.bodies[i + 1] * s.V);
+  }
+}
+
+void NewtonEuler(const KinematicTree& tree, const ScrewInertias& inertias,
+                 ScrewWorkspace* ws) noexcept {
+  for (size_t i = 0; i < tree.nodes.size(); ++i) {
+    ScrewWorkspace::Node& s = ws->nodes[i + 1];
+    s.F = tree.nodes[i].link < 0 ? Screw{} : inertias.bodies[i + 1] * s.A + s.p;
+  }
+  HandOn(tree, ws);
+}
+
+void Momenta(const KinematicTree& tree, const ScrewInertias& inertias,
+             ScrewWorkspace* ws) noexcept {
+  for (size_t i = 0; i < tree.nodes.size(); ++i) {
+    ScrewWorkspace::Node& s = ws->nodes[i + 1];
+    s.F = tree.nodes[i].link < 0 ? Screw{} : inertias.bodies[i + 1] * s.V;
+  }
+  HandOn(tree, ws);
+}
+
+double KineticEnergy(const KinematicTree& tree, const ScrewInertias& inertias,
+                     const ScrewWorkspace& ws) noexcept {
+  double energy = 0;
+  for (size_t i = 1; i <= tree.nodes.size(); ++i) {
+    energy += 0.5 * Power(inertias.bodies[i] * ws.nodes[i].V, ws.nodes[i].V);
+  }
+  return energy;
+}
+
+double WeightEnergy(const KinematicTree& tree, const ScrewInertias& inertias) noexcept {
+  Four moment{};
+  for (const ScrewInertia& body : inertias.bodies) moment += body.moment;
+  return -Dot(FourOf(tree.mechanism.gravity_W), moment);
+}
+
+void GeneralisedForces(const KinematicTree& tree, const ScrewWorkspace& ws, double* tau) noexcept {
+  const ScrewWorkspace::Node* state = ws.nodes.data();
+  for (const TreeNode& node : tree.nodes) {
+    ++state;
+    for (int v = node.v; v < node.v + VelocitiesOf(node.motion); ++v)
+      tau[v] = Power(state->F, ws.S[v]);
+  }
+}
+
+}  // namespace vmech

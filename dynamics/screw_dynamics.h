@@ -1,0 +1,54 @@
+#pragma once
+
+#include <vector>
+
+#include "vmech/kinematics/screw_kinematics.h"
+
+namespace vmech {
+
+/// The algorithms of newton_euler.h for one pose in screws about Wo, for the tick; joints left
+/// open. What a pass finds stays for the next: inertias hold as long as the pose.
+
+/// Inertia of every node about Wo, as one body with all that it carries in `composite`.
+struct ScrewInertias {
+  explicit ScrewInertias(const KinematicTree& tree)
+      : bodies(tree.nodes.size() + 1), composite(bodies) {}
+
+  std::vector<ScrewInertia> bodies, composite;  ///< node i at i + 1; all there is in composite[0]
+};
+
+/// Weight is a ground that falls upwards: the ground's A, once.
+void FallUpwards(const Vector3d& gravity_W, ScrewWorkspace* ws) noexcept;
+
+/// Inertias of the bodies. Needs X.
+void BodyInertias(const KinematicTree& tree, const ScrewWorkspace& ws,
+                  ScrewInertias* inertias) noexcept;
+
+/// Mass matrix M [nv, nv] of the tree by composite rigid bodies [Walker & Orin 1982]:
+///
+///   M_ij = S_j' I_i^c S_i,   j on the way from i to the ground.
+///
+/// Needs S and BodyInertias; writes `composite`. O(n depth).
+void CompositeMassMatrix(const KinematicTree& tree, const ScrewWorkspace& ws,
+                         ScrewInertias* inertias, MatrixXd* M) noexcept;
+
+/// Needs BodyInertias and V; writes p.
+void GyroscopicWrenches(const KinematicTree& tree, const ScrewInertias& inertias,
+                        ScrewWorkspace* ws) noexcept;
+/// F that moves the nodes. Needs A, p and BodyInertias.
+void NewtonEuler(const KinematicTree& tree, const ScrewInertias& inertias,
+                 ScrewWorkspace* ws) noexcept;
+/// F that would bring the nodes from rest to V in a second: momenta, in newton seconds. Needs V.
+void Momenta(const KinematicTree& tree, const ScrewInertias& inertias, ScrewWorkspace* ws) noexcept;
+
+/// Kinetic energy at V [J].
+double KineticEnergy(const KinematicTree& tree, const ScrewInertias& inertias,
+                     const ScrewWorkspace& ws) noexcept;
+/// - sum m g . p_cm [J], zero where every centre of gravity is at the height of Wo. Needs
+/// BodyInertias.
+double WeightEnergy(const KinematicTree& tree, const ScrewInertias& inertias) noexcept;
+
+/// tau_v = S_v . F [nv].
+void GeneralisedForces(const KinematicTree& tree, const ScrewWorkspace& ws, double* tau) noexcept;
+
+}  // namespace vmech

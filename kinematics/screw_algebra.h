@@ -1,0 +1,121 @@
+#pragma once
+
+#include "vmech/kinematics/screw.h"
+#include "vmech/mechanisms/pose.h"
+
+namespace vmech {
+
+// Functions of a few instructions each, which keep the last number of a vector zero. How a Four is
+// passed depends on the instruction set: for the sources of the library alone.
+
+inline Four FourOf(const Vector3d& a) noexcept {
+  return Four{a[0], a[1], a[2], 0};
+}
+inline Vector3d Vector3Of(const Four& a) noexcept {
+  return {a[0], a[1], a[2]};
+}
+
+inline Four Cross(const Four& a, const Four& b) noexcept {
+  const Four a_yzx = __builtin_shufflevector(a, a, 1, 2, 0, 3);
+  const Four b_yzx = __builtin_shufflevector(b, b, 1, 2, 0, 3);
+  const Four zxy = a * b_yzx - a_yzx * b;
+  return __builtin_shufflevector(zxy, zxy, 1, 2, 0, 3);
+}
+inline double Dot(const Four& a, const Four& b) noexcept {
+  const Four ab = a * b;
+  return (ab[0] + ab[2]) + ab[1];
+}
+
+/// R a.
+inline Four Turned(const Axes& X, double a0, double a1, double a2) noexcept {
+  return a0 * X.x + a1 * X.y + a2 * X.z;
+}
+inline Four Turned(const Axes& X, const Vector3d& a) noexcept {
+  return Turned(X, a[0], a[1], a[2]);
+}
+/// R'a.
+inline Four TurnedBack(const Axes& X, const Four& a) noexcept {
+  const Four x = X.x * a, y = X.y * a, z = X.z * a, zero{};
+  const Four xy =
+      __builtin_shufflevector(x, y, 0, 4, 2, 6) + __builtin_shufflevector(x, y, 1, 5, 3, 7);
+  const Four z0 =
+      __builtin_shufflevector(z, zero, 0, 4, 2, 4) + __builtin_shufflevector(z, zero, 1, 4, 3, 4);
+  return __builtin_shufflevector(xy, z0, 0, 1, 4, 5) + __builtin_shufflevector(xy, z0, 2, 3, 6, 7);
+}
+/// R A.
+inline Axes Turned(const Axes& X, const Matrix3d& A, const Four& p) noexcept {
+  return {Turned(X, A.col(0)), Turned(X, A.col(1)), Turned(X, A.col(2)), p};
+}
+/// X_WB p_B.
+inline Four PointInWorld(const Axes& X, const Vector3d& p) noexcept {
+  return X.p + Turned(X, p);
+}
+/// X_WB X_BC.
+inline Axes operator*(const Axes& X, const Posed& Y) noexcept {
+  return Turned(X, Y.R, PointInWorld(X, Y.p));
+}
+inline Posed PoseOf(const Axes& X) noexcept {
+  Posed pose;
+  pose.R << Vector3Of(X.x), Vector3Of(X.y), Vector3Of(X.z);
+  pose.p = Vector3Of(X.p);
+  return pose;
+}
+
+inline Screw& operator+=(Screw& a, const Screw& b) noexcept {
+  a.linear += b.linear;
+  a.angular += b.angular;
+  return a;
+}
+inline Screw& operator-=(Screw& a, const Screw& b) noexcept {
+  a.linear -= b.linear;
+  a.angular -= b.angular;
+  return a;
+}
+inline Screw operator+(const Screw& a, const Screw& b) noexcept {
+  return {a.linear + b.linear, a.angular + b.angular};
+}
+inline Screw operator-(const Screw& a, const Screw& b) noexcept {
+  return {a.linear - b.linear, a.angular - b.angular};
+}
+inline Screw operator*(double s, const Screw& a) noexcept {
+  return {s * a.linear, s * a.angular};
+}
+
+/// The power of a wrench on a twist.
+inline double Power(const Screw& wrench, const Screw& twist) noexcept {
+  const Four power = wrench.linear * twist.linear + wrench.angular * twist.angular;
+  return (power[0] + power[2]) + power[1];
+}
+/// The velocity of a point Q that moves with a twist.
+inline Four VelocityAt(const Four& p_WQ, const Screw& twist) noexcept {
+  return twist.linear + Cross(twist.angular, p_WQ);
+}
+/// A wrench that is given about a point Q.
+inline Screw WrenchAt(const Four& p_WQ, const Four& force, const Four& moment) noexcept {
+  return {force, moment + Cross(p_WQ, force)};
+}
+/// The rate at which a twist U changes that is carried along by a twist V.
+inline Screw CarriedTwist(const Screw& V, const Screw& U) noexcept {
+  return {Cross(V.angular, U.linear) + Cross(V.linear, U.angular), Cross(V.angular, U.angular)};
+}
+/// The rate at which a wrench or a momentum changes that is carried along by a twist V.
+inline Screw CarriedWrench(const Screw& V, const Screw& F) noexcept {
+  return {Cross(V.angular, F.linear), Cross(V.angular, F.angular) + Cross(V.linear, F.linear)};
+}
+
+inline ScrewInertia& operator+=(ScrewInertia& a, const ScrewInertia& b) noexcept {
+  a.mass += b.mass;
+  a.moment += b.moment;
+  a.Ix += b.Ix;
+  a.Iy += b.Iy;
+  a.Iz += b.Iz;
+  return a;
+}
+/// The momentum at a twist.
+inline Screw operator*(const ScrewInertia& I, const Screw& V) noexcept {
+  const Four& w = V.angular;
+  return {I.mass * V.linear + Cross(w, I.moment),
+          w[0] * I.Ix + w[1] * I.Iy + w[2] * I.Iz + Cross(I.moment, V.linear)};
+}
+
+}  // namespace vmech

@@ -1,0 +1,215 @@
+#include "vmech/kinematics/screw_kinematics.h"
+
+#include "vmech/kinematics/forward_kinematics.h"
+#include "vmech/kinematics/loops.h"
+#include "vmech/kinematics/screw_algebra.h"
+
+namespace vmech {
+namespace {
+
+void TurnAboutZ(double sine, double cosine, Axes* X) {
+  const Four x = X->x;
+  X->x = cosine * x + sine * X->y;
+  X->y = cosine * X->y - sine * x;
+}
+
+/// Of a node in its parent, at the joints' rates v.
+Screw JointTwist(const TreeNode& node, const double* v, const ScrewWorkspace& ws) {
+  if (node.v < 0) return {};
+  Screw V = v[node.v] * ws.S[node.v];
+  for (int k = 1; k < VelocitiesOf(node.motion); ++k) V += v[node.v + k] * ws.S[node.v + k];
+  return V;
+}
+
+Screw ForceAlong(const Four& axis, const Four& p_WM) {
+  return {axis, Cross(p_WM, axis)};
+}
+
+Screw MomentAbout(const Four& axis) {
+  return {Four{}, axis};
+}
+
+/// Equations as ProjectOnRows lists them.
+void FindRows(const Loop& loop, LoopScrews* s) {
+  const Axes& F = s->F;
+  Screw* row = s->rows;
+  switch (loop.type) {
+    case JointType::kRevolute:
+    case JointType::kUniversal:
+    case JointType::kSpherical:
+    case JointType::kWeld:
+      for (const Four* axis : {&F.x, &F.y, &F.z}) *row++ = ForceAlong(*axis, F.p);
+      break;
+    case JointType::kPrismatic:
+    case JointType::kCylindrical:
+    case JointType::kScrew:
+      for (const Four* axis : {&F.x, &F.y}) *row++ = ForceAlong(*axis, F.p);
+      break;
+    case JointType::kPlanar:
+      *row++ = ForceAlong(F.z, F.p);
+      break;
+  }
+  switch (loop.type) {
+    case JointType::kRevolute:
+    case JointType::kCylindrical:
+    case JointType::kPlanar:
+    case JointType::kScrew:
+      for (const Four* axis : {&F.x, &F.y}) *row++ = MomentAbout(*axis);
+      break;
+    case JointType::kPrismatic:
+    case JointType::kWeld:
+      for (const Four* axis : {&F.x, &F.y, &F.z}) *row++ = MomentAbout(*axis);
+      break;
+    case JointType::kUniversal:
+      *row++ = MomentAbout(Turned(F, s->state.n_F));
+      break;
+    case JointType::kSpherical:
+      break;
+  }
+  if (loop.type == JointType::kScrew) {
+    *row = ForceAlong(F.z, F.p) - loop.pitch * MomentAbout(F.z);
+  }
+}
+
+}  // namespace
+
+ScrewWorkspace::ScrewWorkspace(const KinematicTree& tree)
+    : nodes(tree.nodes.size() + 1),
+      S(tree.nv),
+      loops(tree.loops.size()),
+      sine(tree.nq),
+      cosine(tree.nq) {}
+
+void ForwardKinematics(const KinematicTree& tree, const double* q, ScrewWorkspace* ws) noexcept {
+  Sines(q, tree.nq, ws->sine.data(), ws->cosine.data());
+  ScrewWorkspace::Node* state = ws->nodes.data();
+  for (const TreeNode& node : tree.nodes) {
+    Axes X = ws->at(node.parent).X * node.X_PF;
+    switch (node.motion) {
+      case NodeMotion::kFixed:
+        break;
+      case NodeMotion::kRevolute:
+        TurnAboutZ(ws->sine[node.q], ws->cosine[node.q], &X);
+        break;
+      case NodeMotion::kPrismatic:
+        X.p += q[node.q] * X.z;
+        break;
+      case NodeMotion::kScrew:
+        X.p += (node.pitch * q[node.q]) * X.z;
+        TurnAboutZ(ws->sine[node.q], ws->cosine[node.q], &X);
+        break;
+      case NodeMotion::kSpherical: {
+        const Matrix3d R_FM = RotationOf(q + node.q);
+        X = Turned(X, node.reversed ? Matrix3d(R_FM.transpose()) : R_FM, X.p);
+        break;
+      }
+    }
+    (++state)->X = X;
+  }
+}
+
+void JointScrews(const KinematicTree& tree, ScrewWorkspace* ws) noexcept {
+  const ScrewWorkspace::Node* state = ws->nodes.data();
+  for (const TreeNode& node : tree.nodes) {
+    const Axes& X = (++state)->X;
+    switch (node.motion) {
+      case NodeMotion::kFixed:
+        break;
+      case NodeMotion::kRevolute:
+        ws->S[node.v] = {Cross(X.p, X.z), X.z};
+        break;
+      case NodeMotion::kPrismatic:
+        ws->S[node.v] = {X.z, Four{}};
+        break;
+      case NodeMotion::kScrew:
+        ws->S[node.v] = {Cross(X.p, X.z) + node.pitch * X.z, X.z};
+        break;
+      case NodeMotion::kSpherical: {
+        // Reversed, v is the rate of the parent in axes that are fixed there.
+        const Axes M = node.reversed ? Turned(ws->at(node.parent).X, -node.X_PF.R, X.p) : X;
+        Screw* S = &ws->S[node.v];
+        for (const Four* axis : {&M.x, &M.y, &M.z}) *S++ = {Cross(X.p, *axis), *axis};
+        break;
+      }
+    }
+  }
+}
+
+void ForwardVelocities(const KinematicTree& tree, const double* v, ScrewWorkspace* ws) noexcept {
+  ScrewWorkspace::Node* state = ws->nodes.data();
+  for (const TreeNode& node : tree.nodes) {
+    (++state)->V = ws->at(node.parent).V + JointTwist(node, v, *ws);
+  }
+}
+
+void VelocityProducts(const KinematicTree& tree, ScrewWorkspace* ws) noexcept {
+  ScrewWorkspace::Node* state = ws->nodes.data();
+  for (const TreeNode& node : tree.nodes) {
+    // Joint axes go with the parent, or with the node, which is the same: V_P x (V - V_P).
+    ++state;
+    state->c = CarriedTwist(ws->at(node.parent).V, state->V);
+  }
+}
+
+void ForwardAccelerations(const KinematicTree& tree, const double* vdot,
+                          ScrewWorkspace* ws) noexcept {
+  ScrewWorkspace::Node* state = ws->nodes.data();
+  for (const TreeNode& node : tree.nodes) {
+    ++state;
+    Screw A = ws->at(node.parent).A + state->c;
+    if (vdot != nullptr) A += JointTwist(node, vdot, *ws);
+    state->A = A;
+  }
+}
+
+void PointJacobian(const KinematicTree& tree, const ScrewWorkspace& ws, int node, const Four& p_WQ,
+                   Matrix6Xd* J) noexcept {
+  J->setZero();
+  for (int n = node; n >= 0; n = tree.nodes[n].parent) {
+    const TreeNode& carrier = tree.nodes[n];
+    for (int v = carrier.v; v < carrier.v + VelocitiesOf(carrier.motion); ++v) {
+      const Screw& S = ws.S[v];
+      J->col(v) = Stacked<double>(Vector3Of(VelocityAt(p_WQ, S)), Vector3Of(S.angular));
+    }
+  }
+}
+
+void LoopErrors(const KinematicTree& tree, ScrewWorkspace* ws) noexcept {
+  for (size_t l = 0; l < tree.loops.size(); ++l) {
+    const Loop& loop = tree.loops[l];
+    const JointPlacement& place = tree.placements[loop.joint];
+    LoopScrews& s = ws->loops[l];
+    s.F = ws->at(place.first_node).X * place.X_AF;
+    const Axes M = ws->at(place.second_node).X * place.X_BM;
+    SetLoopState(loop, PoseOf(s.F), PoseOf(M), &s.state);
+    s.F.p = M.p;
+  }
+}
+
+void LoopWrenches(const KinematicTree& tree, const double* row_scale, ScrewWorkspace* ws) noexcept {
+  for (size_t l = 0; l < tree.loops.size(); ++l) {
+    const Loop& loop = tree.loops[l];
+    LoopScrews& s = ws->loops[l];
+    FindRows(loop, &s);
+    for (int k = 0; k < loop.rows; ++k) s.rows[k] = row_scale[loop.row + k] * s.rows[k];
+  }
+}
+
+void LoopBias(const KinematicTree& tree, const ScrewWorkspace& ws, int loop_index,
+              double* bias) noexcept {
+  const Loop& loop = tree.loops[loop_index];
+  const LoopScrews& s = ws.loops[loop_index];
+  const JointPlacement& place = tree.placements[loop.joint];
+  const ScrewWorkspace::Node &A = ws.at(place.first_node), &B = ws.at(place.second_node);
+  // The rate of M's twist in F as an observer on F sees it.
+  const Screw V_rel = B.V - A.V;
+  const Screw rate = B.A - A.A - CarriedTwist(A.V, V_rel);
+  for (int k = 0; k < loop.rows; ++k) bias[k] = Power(s.rows[k], rate);
+  if (loop.type == JointType::kUniversal) {
+    // n = y_M x x_F turns in F.
+    const Four y_M = Turned(s.F, s.state.R_FM.col(1));
+    bias[3] += Dot(Cross(Cross(V_rel.angular, y_M), s.F.x), V_rel.angular);
+  }
+}
+
+}  // namespace vmech

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <vector>
+
+#include "vmech/kinematics/jacobian.h"
+#include "vmech/kinematics/screw.h"
+#include "vmech/kinematics/tree_workspace.h"
+
+namespace vmech {
+
+/// The algorithms of forward_kinematics.h and loops.h for one pose at a time in whole registers and
+/// with screws about Wo, for the tick: half the instructions, and what they give agrees to
+/// rounding. Bodies far from Wo lose digits, about one for a distance of three times their size.
+
+/// The state of one loop.
+struct LoopScrews {
+  LoopState<double> state;  ///< but for `bias`
+  Axes F;                   ///< the cut joint's first anchor, at the second's origin M
+  Screw rows[6];            ///< what a unit multiplier of each equation does to the second link
+};
+
+/// Memory for one pose of a tree, sized once.
+struct ScrewWorkspace {
+  explicit ScrewWorkspace(const KinematicTree& tree);
+
+  /// Node i is at i + 1; the ground comes first.
+  struct Node {
+    Axes X;   ///< X_WB
+    Screw V;  ///< twist
+    Screw c;  ///< velocity product: what A would be if the parent's A and v' were zero
+    Screw A;  ///< rate of V; the ground's is the caller's, who lets it fall upwards for gravity
+    Screw p;  ///< velocity product: what F would be if A were zero
+    Screw F;  ///< what the parent exerts on this node
+  };
+  std::vector<Node> nodes;
+  std::vector<Screw> S;  ///< twist of each unit velocity [nv]
+  std::vector<LoopScrews> loops;
+  std::vector<double> sine, cosine;  ///< of the coordinates [nq]
+
+  const Node& at(int node) const { return nodes[node + 1]; }
+  Node& at(int node) { return nodes[node + 1]; }
+};
+
+/// Poses of all nodes; writes X.
+void ForwardKinematics(const KinematicTree& tree, const double* q, ScrewWorkspace* ws) noexcept;
+/// The joints' twists. Needs X; writes S.
+void JointScrews(const KinematicTree& tree, ScrewWorkspace* ws) noexcept;
+/// V from v [nv]. Needs S.
+void ForwardVelocities(const KinematicTree& tree, const double* v, ScrewWorkspace* ws) noexcept;
+/// Needs V; writes c.
+void VelocityProducts(const KinematicTree& tree, ScrewWorkspace* ws) noexcept;
+/// A from v' [nv], or for v' = 0 from nullptr. Needs S and c.
+void ForwardAccelerations(const KinematicTree& tree, const double* vdot,
+                          ScrewWorkspace* ws) noexcept;
+
+/// Geometric Jacobian J [6, nv] of a point Q that moves with a node, V_WQ = J v, [v; w]. Needs S.
+void PointJacobian(const KinematicTree& tree, const ScrewWorkspace& ws, int node, const Four& p_WQ,
+                   Matrix6Xd* J) noexcept;
+
+/// Loop errors. Needs X; writes `state` and F.
+void LoopErrors(const KinematicTree& tree, ScrewWorkspace* ws) noexcept;
+/// Writes `rows`, the rows of C as wrenches: C_kv = +-rows[k] . S_v for the velocities around the
+/// loop. `row_scale` [tree.rows] as LoopRowScale. Needs LoopErrors.
+void LoopWrenches(const KinematicTree& tree, const double* row_scale, ScrewWorkspace* ws) noexcept;
+/// C' v of one loop, in the scale of its rows: they give C v' + bias = 0. Needs
+/// LoopWrenches, V and A for v' = 0; writes Loop::rows entries.
+void LoopBias(const KinematicTree& tree, const ScrewWorkspace& ws, int loop, double* bias) noexcept;
+
+}  // namespace vmech
