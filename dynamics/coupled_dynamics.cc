@@ -40,11 +40,18 @@ HandCoupling Checked(HandCoupling coupling, GraspKind kind) {
 
 /// Of a spring along `way` that pulls with `pull`, and with no more than `most`.
 double SpringEnergy(const Vector3d& way, const Vector3d& pull, double most) {
-  const double force = pull.norm();
-  const double whole = 0.5 * way.dot(pull);
-  if (force <= most) return whole;
-  const double part = most / force;  // of the way, until it slips
+  const double whole = 0.5 * way.dot(pull), force2 = pull.squaredNorm();
+  if (force2 <= most * most) return whole;
+  const double part = most / std::sqrt(force2);  // of the way, until it slips
   return whole * part * (2 - part);
+}
+
+/// Shortens a vector to `most`. True if it was longer.
+bool Shorten(double most, Eigen::Ref<Vector3d> a) {
+  const double length2 = a.squaredNorm();
+  if (length2 <= most * most) return false;
+  a *= most / std::sqrt(length2);
+  return true;
 }
 
 }  // namespace
@@ -86,6 +93,7 @@ CoupledDynamics::CoupledDynamics(const KinematicTree& tree, const GraspFrame& gr
   AddCoupling();
   const double rows = pose_.C().squaredNorm();
   if (rows > 0) system_.SetWeight(kLoopWeight * A_.trace() / rows);
+  system_.SetConstraints(pose_.C());
 }
 
 void CoupledDynamics::ListFreedoms() {
@@ -115,7 +123,7 @@ void CoupledDynamics::TakeHold(const GraspFrame& grasp) noexcept {
 CoupledStatus CoupledDynamics::Step(const Posed& X_WH, const Vector6d& V_WH) noexcept {
   X_WH_ = X_WH;
   V_WH_ = V_WH;
-  e1_ = HandError(pose_.X_WG(), X_WH);
+  TakeError();
   const double before = Energy();
   BiasForces();
   BuildSystem();
@@ -128,7 +136,7 @@ CoupledStatus CoupledDynamics::Step(const Posed& X_WH, const Vector6d& V_WH) noe
   }
   FindWrenches();
   const CoupledStatus status = Move();
-  e1_ = HandError(pose_.X_WG(), X_WH);
+  TakeError();
   if (status == CoupledStatus::kMoved) KeepEnergy(before);
   return status;
 }
@@ -168,11 +176,9 @@ bool CoupledDynamics::Slip() noexcept {
   const Vector6d V_WG = pose_.Twist(next_v_);
   w_ = coupling_.stiffness.cwiseProduct(e1_ - T_ * V_WG) +
        coupling_.damping.cwiseProduct(V_WH_ - V_WG);
-  const double force = w_.head<3>().norm(), moment = w_.tail<3>().norm();
-  slipping_ = force > coupling_.max_force || moment > coupling_.max_moment;
-  if (force > coupling_.max_force) w_.head<3>() *= coupling_.max_force / force;
-  if (moment > coupling_.max_moment) w_.tail<3>() *= coupling_.max_moment / moment;
-  return slipping_;
+  const bool force_slips = Shorten(coupling_.max_force, w_.head<3>());
+  const bool moment_slips = Shorten(coupling_.max_moment, w_.tail<3>());
+  return slipping_ = force_slips || moment_slips;
 }
 
 /// Velocities with the joints' limits; those that held last are tried first.
@@ -203,7 +209,7 @@ bool CoupledDynamics::SolveVelocity() noexcept {
     limited_A_(v, v) += hold;
     limited_right_[v] += hold * ((contact > 0 ? upper : lower) - q_[q]) / T_;
   }
-  if (!system_.Factor(limited_A_, pose_.C())) return false;
+  if (!system_.Factor(limited_A_)) return false;
   system_.Solve(pose_.C(), limited_right_, d_, &next_v_);
   return next_v_.allFinite();
 }
@@ -238,7 +244,8 @@ void CoupledDynamics::FindWrenches() noexcept {
   vdot_ = (next_v_ - v_) / T_;
   pose_.SetAccelerations(vdot_);
   pose_.TakeForces(&x_);
-  mu_ = -system_.mu();
+  system_.TakeMultipliers(pose_.C(), d_, &mu_);
+  mu_ = -mu_;
   pose_.LoadJoints(w_, mu_, &joints_);
 }
 
@@ -254,6 +261,7 @@ CoupledStatus CoupledDynamics::Move() noexcept {
     v_.setZero();
     pose_.Set(q_);
   }
+  system_.SetConstraints(pose_.C());
   TakeInertia();
   TakeVelocities();
   if (!w_.allFinite()) return CoupledStatus::kFailed;
@@ -307,11 +315,13 @@ void CoupledDynamics::KeepEnergy(double before) noexcept {
   TakeVelocities();
 }
 
-double CoupledDynamics::CouplingEnergy() const noexcept {
-  if (!coupled_) return 0;
+/// e1, and the energy of the coupling.
+void CoupledDynamics::TakeError() noexcept {
+  e1_ = HandError(pose_.X_WG(), X_WH_);
+  if (!coupled_) return;
   const Vector6d pull = coupling_.stiffness.cwiseProduct(e1_);
-  return SpringEnergy(e1_.head<3>(), pull.head<3>(), coupling_.max_force) +
-         SpringEnergy(e1_.tail<3>(), pull.tail<3>(), coupling_.max_moment);
+  spring_ = SpringEnergy(e1_.head<3>(), pull.head<3>(), coupling_.max_force) +
+            SpringEnergy(e1_.tail<3>(), pull.tail<3>(), coupling_.max_moment);
 }
 
 }  // namespace vmech

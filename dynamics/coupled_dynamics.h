@@ -52,7 +52,10 @@ class CoupledDynamics {
   /// Held at another frame of the same kind, or again after LetGo.
   void TakeHold(const GraspFrame& grasp) noexcept;
   /// Nobody holds it: the coupling exerts nothing until TakeHold.
-  void LetGo() noexcept { coupled_ = false; }
+  void LetGo() noexcept {
+    coupled_ = false;
+    spring_ = 0;
+  }
   /// A step with the hand at X_WH, moving with V_WH [v; w] at Ho, world axes.
   [[nodiscard]] CoupledStatus Step(const Posed& X_WH, const Vector6d& V_WH) noexcept;
 
@@ -69,7 +72,7 @@ class CoupledDynamics {
   /// Every joint's wrench during the step, as HandDynamics::joints.
   const std::vector<Wrenchd>& joints() const noexcept { return joints_; }
   /// Kinetic energy, weight, springs of joints and coupling [J].
-  double Energy() const noexcept { return kinetic_ + potential_ + CouplingEnergy(); }
+  double Energy() const noexcept { return kinetic_ + potential_ + spring_; }
   double closure() const noexcept { return closure_; }  ///< largest loop error [-], lengths over L
   bool at_limit() const noexcept;                       ///< a joint stands at a limit
   bool slipping() const noexcept { return slipping_; }  ///< the coupling is at its largest wrench
@@ -97,7 +100,7 @@ class CoupledDynamics {
   bool Close() noexcept;
   void TakeInertia() noexcept;
   void TakeVelocities() noexcept;
-  double CouplingEnergy() const noexcept;
+  void TakeError() noexcept;
   void KeepEnergy(double before) noexcept;
 
   const KinematicTree& tree_;
@@ -114,6 +117,7 @@ class CoupledDynamics {
   Vector6d e1_ = Vector6d::Zero(), V_WH_ = Vector6d::Zero(), w_ = Vector6d::Zero();
   double closure_ = 0;
   double kinetic_ = 0, potential_ = 0;  // without the coupling's [J]
+  double spring_ = 0;                   // of the coupling [J]
   double lost_ = 0;                     // energy that steps may give back [J]
   bool slipping_ = false;
   bool coupled_ = true;

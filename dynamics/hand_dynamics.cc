@@ -49,6 +49,7 @@ HandDynamics::HandDynamics(const KinematicTree& tree, const GraspFrame& grasp,
       right_(v_),
       d_(pose_.e2()),
       none_(d_),
+      mu_(d_),
       joints_(tree.mechanism.joints.size()),
       spring_length_(tree.nv, 0.0) {
   RefuseUnrenderedFriction(tree);
@@ -88,7 +89,8 @@ bool HandDynamics::Evaluate(const Vector6d& V_WG, const Vector6d& A_WG, double i
   PassiveForces();
   system_.Solve(pose_.C(), tau_, none_, &x_);
   w_d_ = K_.cwiseProduct(pose_.Twist(x_));
-  pose_.LoadJoints(w_d_, system_.mu(), &joints_);
+  system_.TakeMultipliers(pose_.C(), none_, &mu_);
+  pose_.LoadJoints(w_d_, mu_, &joints_);
   return w_d_.allFinite();
 }
 
@@ -101,7 +103,8 @@ bool HandDynamics::Factor() noexcept {
   rootKJ_.topRows<6>() = root_K_.asDiagonal() * pose_.J();
   system_.Gram(rootKJ_, &A_);
   A_.diagonal().array() += kDamping * A_.trace();
-  return system_.Factor(A_, pose_.C());
+  system_.SetConstraints(pose_.C());
+  return system_.Factor(A_);
 }
 
 /// min |J x - b|_K subject to C x = d.

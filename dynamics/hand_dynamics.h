@@ -62,7 +62,7 @@ class HandDynamics {
   HeldPose pose_;
   SaddleSystem system_;
   MatrixXd rootKJ_, A_;
-  VectorXd q_, v_, felt_v_, vdot_, tau_, x_, right_, d_, none_;
+  VectorXd q_, v_, felt_v_, vdot_, tau_, x_, right_, d_, none_, mu_;
   std::vector<Wrenchd> joints_;
   std::vector<double> spring_length_;  // per velocity: q - rest
   Vector6d w_d_ = Vector6d::Zero();

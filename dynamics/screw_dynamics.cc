@@ -20,9 +20,16 @@ ScrewInertia InertiaInWorld(const TreeNode& node, const Axes& X) {
 /// Every node carries its children.
 void HandOn(const KinematicTree& tree, ScrewWorkspace* ws) {
   ws->nodes[0].F = {};
-  for (size_t i = tree.nodes.size(); i-- > 0;) {
-    ws->at(tree.nodes[i].parent).F += ws->nodes[i + 1].F;
+  Screw sum;  // what this node gets from the next, in registers: a chain need not wait for memory
+  for (int i = static_cast<int>(tree.nodes.size()); i-- > 0;) {
+    const int parent = tree.nodes[i].parent;
+    sum += ws->at(i).F;
+    ws->at(i).F = sum;
+    if (parent == i - 1) continue;
+    ws->at(parent).F += sum;
+    sum = {};
   }
+  ws->nodes[0].F += sum;
 }
 
 }  // namespace
@@ -77,11 +84,17 @@ void NewtonEuler(const KinematicTree& tree, const ScrewInertias& inertias,
   HandOn(tree, ws);
 }
 
-void Momenta(const KinematicTree& tree, const ScrewInertias& inertias,
-             ScrewWorkspace* ws) noexcept {
+void Momenta(const KinematicTree& tree, ScrewWorkspace* ws) noexcept {
   for (size_t i = 0; i < tree.nodes.size(); ++i) {
+    const TreeNode& node = tree.nodes[i];
     ScrewWorkspace::Node& s = ws->nodes[i + 1];
-    s.F = tree.nodes[i].link < 0 ? Screw{} : inertias.bodies[i + 1] * s.V;
+    s.F = {};
+    if (node.link < 0) continue;
+    const Four c = PointInWorld(s.X, node.p_BoBcm), w_B = TurnedBack(s.X, s.V.angular);
+    const Four linear = node.mass * VelocityAt(c, s.V);
+    const Matrix3d& I = node.I_Bcm;
+    const Vector3d spin = w_B[0] * I.col(0) + w_B[1] * I.col(1) + w_B[2] * I.col(2);
+    s.F = WrenchAt(c, linear, Turned(s.X, spin));
   }
   HandOn(tree, ws);
 }

@@ -38,8 +38,9 @@ void GyroscopicWrenches(const KinematicTree& tree, const ScrewInertias& inertias
 /// F that moves the nodes. Needs A, p and BodyInertias.
 void NewtonEuler(const KinematicTree& tree, const ScrewInertias& inertias,
                  ScrewWorkspace* ws) noexcept;
-/// F that would bring the nodes from rest to V in a second: momenta, in newton seconds. Needs V.
-void Momenta(const KinematicTree& tree, const ScrewInertias& inertias, ScrewWorkspace* ws) noexcept;
+/// F that would bring the nodes from rest to V in a second: their momenta. Needs V; quicker than to
+/// find inertias for this alone.
+void Momenta(const KinematicTree& tree, ScrewWorkspace* ws) noexcept;
 
 /// Kinetic energy at V [J].
 double KineticEnergy(const KinematicTree& tree, const ScrewInertias& inertias,

@@ -43,12 +43,14 @@ ArmModel::ArmModel(std::shared_ptr<const ArmDescription> arm)
 void ArmModel::SetPosture(const double* q) noexcept {
   ForwardKinematics(arm_->tree, q, &ws_);
   JointScrews(arm_->tree, &ws_);
-  BodyInertias(arm_->tree, ws_, &inertias_);
-  X_DH_ = PoseOf(ws_.at(arm_->handle_node).X * arm_->X_BH);
+}
+
+Posed ArmModel::X_DH() const noexcept {
+  return PoseOf(ws_.at(arm_->handle_node).X * arm_->X_BH);
 }
 
 const Matrix6Xd& ArmModel::J() noexcept {
-  PointJacobian(arm_->tree, ws_, arm_->handle_node, FourOf(X_DH_.p), &J_);
+  PointJacobian(arm_->tree, ws_, arm_->handle_node, FourOf(X_DH().p), &J_);
   return J_;
 }
 
@@ -57,6 +59,7 @@ void ArmModel::BiasForces(const VectorXd& v, const Wrenchd& F_Ho) noexcept {
   const KinematicTree& tree = arm_->tree;
   ForwardVelocities(tree, v.data(), &ws_);
   VelocityProducts(tree, &ws_);
+  BodyInertias(tree, ws_, &inertias_);
   ForwardAccelerations(tree, nullptr, &ws_);
   GyroscopicWrenches(tree, inertias_, &ws_);
   NewtonEuler(tree, inertias_, &ws_);
@@ -70,17 +73,19 @@ const VectorXd& ArmModel::GravityTorques() noexcept {
 }
 
 const MatrixXd& ArmModel::MassMatrix() noexcept {
+  BodyInertias(arm_->tree, ws_, &inertias_);
   CompositeMassMatrix(arm_->tree, ws_, &inertias_, &M_);
   return M_;
 }
 
 void ArmModel::Momenta(const double* v, double* momenta) noexcept {
   ForwardVelocities(arm_->tree, v, &ws_);
-  vmech::Momenta(arm_->tree, inertias_, &ws_);
+  vmech::Momenta(arm_->tree, &ws_);
   GeneralisedForces(arm_->tree, ws_, momenta);
 }
 
-double ArmModel::PotentialEnergy() const noexcept {
+double ArmModel::PotentialEnergy() noexcept {
+  BodyInertias(arm_->tree, ws_, &inertias_);
   return WeightEnergy(arm_->tree, inertias_);
 }
 

@@ -39,7 +39,7 @@ class ArmModel {
   /// Everything below is at the posture set last; `q` has joints() entries.
   void SetPosture(const double* q) noexcept;
 
-  const Posed& X_DH() const noexcept { return X_DH_; }
+  Posed X_DH() const noexcept;
   const Matrix6Xd& J() noexcept;  ///< [6, joints], about Ho, axes of D
   /// Columns of J about Do [joints].
   const std::vector<Screw>& S() const noexcept { return ws_.S; }
@@ -52,7 +52,7 @@ class ArmModel {
   /// entries.
   void Momenta(const double* v, double* momenta) noexcept;
   /// - sum m g . p_cm [J], zero where every centre of gravity is at the height of Do.
-  double PotentialEnergy() const noexcept;
+  double PotentialEnergy() noexcept;
   /// v' from the velocities, the joints' torques (motors and passive ones together) and the wrench
   /// on the handle. `v`, `torque` have joints() entries; so has the result.
   const VectorXd& Accelerations(const VectorXd& v, const VectorXd& torque,
@@ -64,7 +64,6 @@ class ArmModel {
   std::shared_ptr<const ArmDescription> arm_;
   ScrewWorkspace ws_;
   ScrewInertias inertias_;
-  Posed X_DH_;
   Matrix6Xd J_;
   MatrixXd M_;
   VectorXd bias_, rest_, acceleration_;

@@ -1,8 +1,8 @@
 #include "vmech/hw_interface/arm_torques.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <numeric>
 
 #include "vmech/kinematics/screw_algebra.h"
 #include "vmech/solvers/small_ldlt.h"
@@ -11,9 +11,10 @@
 namespace vmech {
 namespace {
 
-constexpr int kTwistRows[] = {0, 1, 2, 4, 5, 6};  // that are not padding
 constexpr int kPaddedRows = 8;
 static_assert(sizeof(Screw) == kPaddedRows * sizeof(double));
+constexpr double kUnits[6][kPaddedRows] = {
+    {1}, {0, 1}, {0, 0, 1}, {0, 0, 0, 0, 1}, {0, 0, 0, 0, 0, 1}, {0, 0, 0, 0, 0, 0, 1}};
 
 }  // namespace
 
@@ -33,6 +34,7 @@ ArmTorques::ArmTorques(const PostureOptions& options, std::shared_ptr<const ArmD
       free_(MatrixXd::Zero(arm_.joints(), arm_.joints())),
       momenta_(free_) {
   options.Validate();
+  std::iota(joint_.begin(), joint_.end(), 0);
 }
 
 void ArmTorques::Reset() noexcept {
@@ -69,50 +71,67 @@ void ArmTorques::Resolve(const MasterState& state, bool fresh,
   for (int i = 0; i < arm_.joints(); ++i) command->torque[i] = torque_[i];
 }
 
-/// Motions that leave the handle where it is, by Gauss-Jordan elimination, each row with its
-/// largest entry for a pivot; writes them to free_ and returns how many there are.
+/// Motions that leave the handle where it is; writes them to free_ and returns how many there are.
 int ArmTorques::FindFreeMotions() noexcept {
-  constexpr double kSingular = 1e-9;  // pivot over the norm of J: the handle cannot go that way
+  constexpr double kMostGrowth = 4;
+  const int n = arm_.joints(), full = std::min(n, 6);
+  // The pivots of the last posture mostly do.
+  const bool done = rank_ == full && Eliminate(false) < kMostGrowth && rank_ == full;
+  if (!done) Eliminate(true);
+  for (int k = 0; k < n - rank_; ++k) {
+    double* motion = free_.col(k).data();
+    const double* const shares = reduced_.col(rank_ + k).data();
+    std::fill_n(motion, n, 0.0);
+    motion[joint_[rank_ + k]] = 1;
+    for (int i = 0; i < rank_; ++i) motion[joint_[i]] = -shares[pivot_row_[i]];
+  }
+  return n - rank_;
+}
+
+/// Gauss-Jordan elimination of S, joint by joint in the order of joint_; if `search`, in that in
+/// which every row has its largest entry for a pivot. Leaves each column's shares of the pivots' in
+/// the pivots' rows, and returns the largest.
+double ArmTorques::Eliminate(bool search) noexcept {
+  constexpr double kSingular = 1e-9;  // pivot over the norm of S: the handle cannot go that way
   const int n = arm_.joints();
-  std::array<double*, kMaxArmJoints> column;  // those of pivots first
-  double square = 0;
+  double* const columns = reduced_.data();
+  double* const end = columns + kPaddedRows * n;
+  double square = 0, largest_share = 0;
   for (int j = 0; j < n; ++j) {
-    column[j] = reduced_.col(j).data();
-    const Screw& S = arm_.S()[j];
-    StoreFour(S.linear, column[j]);
-    StoreFour(S.angular, column[j] + 4);
+    const Screw& S = arm_.S()[joint_[j]];
+    StoreFour(S.linear, columns + kPaddedRows * j);
+    StoreFour(S.angular, columns + kPaddedRows * j + 4);
     square += Power(S, S);
   }
   const double singular = kSingular * std::sqrt(square);
-  std::array<int, 6> pivot_row;
-  int rank = 0;
-  for (int row : kTwistRows) {
-    if (rank == n) break;
-    int at = rank;
-    double largest = std::abs(column[rank][row]);
-    for (int j = rank + 1; j < n; ++j) {
-      const double size = std::abs(column[j][row]);
-      at = size > largest ? j : at;
-      largest = std::max(largest, size);
+  rank_ = 0;
+  for (int i = 0; i < 6 && rank_ < n; ++i) {
+    const int row = i < 3 ? i : i + 1;  // the fourth is padding
+    if (search) BringLargestForward(row);
+    const double* const pivot = columns + kPaddedRows * rank_;
+    if (!(std::abs(pivot[row]) > singular)) continue;
+    // A pivot less one leaves the share where it eliminates: no second store, which would hold up
+    // the next load.
+    const double inverse = 1 / pivot[row];
+    const Four linear = LoadFour(pivot) - LoadFour(kUnits[i]);
+    const Four angular = LoadFour(pivot + 4) - LoadFour(kUnits[i] + 4);
+    for (double* c = columns + kPaddedRows * (rank_ + 1); c < end; c += kPaddedRows) {
+      const double share = c[row] * inverse;
+      StoreFour(LoadFour(c) - share * linear, c);
+      StoreFour(LoadFour(c + 4) - share * angular, c + 4);
+      largest_share = std::max(largest_share, std::abs(share));
     }
-    if (!(largest > singular)) continue;
-    std::swap(column[rank], column[at]);
-    const double inverse = 1 / column[rank][row];
-    for (int j = rank + 1; j < n; ++j) {
-      const double share = column[j][row] * inverse;
-      AddScaled(-share, column[rank], kPaddedRows, column[j]);
-      column[j][row] = share;
-    }
-    pivot_row[rank++] = row;
+    pivot_row_[rank_++] = row;
   }
-  const auto joint = [&](const double* c) { return (c - reduced_.data()) / kPaddedRows; };
-  for (int k = 0; k < n - rank; ++k) {
-    double* motion = free_.col(k).data();
-    std::fill_n(motion, n, 0.0);
-    motion[joint(column[rank + k])] = 1;
-    for (int i = 0; i < rank; ++i) motion[joint(column[i])] = -column[rank + k][pivot_row[i]];
-  }
-  return n - rank;
+  return largest_share;
+}
+
+/// Of the columns that are no pivots yet.
+void ArmTorques::BringLargestForward(int row) noexcept {
+  Eigen::Index largest = 0;
+  reduced_.row(row).tail(arm_.joints() - rank_).cwiseAbs().maxCoeff(&largest);
+  std::swap(joint_[rank_], joint_[rank_ + largest]);
+  reduced_.col(rank_).swap(reduced_.col(rank_ + largest));
 }
 
 }  // namespace vmech

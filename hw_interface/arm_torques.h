@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "vmech/hw_interface/arm_model.h"
 #include "vmech/hw_interface/estimators.h"
 #include "vmech/hw_interface/master.h"
@@ -36,13 +38,18 @@ class ArmTorques {
                MasterCommand* command) noexcept VMECH_NONBLOCKING;
 
  private:
+  int FindFreeMotions() noexcept;
+  double Eliminate(bool search) noexcept;
+  void BringLargestForward(int row) noexcept;
+
   PostureOptions options_;
   ArmModel arm_;
-  int FindFreeMotions() noexcept;
-
   std::vector<KalmanEstimator> velocity_;
   VectorXd posture_torque_, torque_;
-  MatrixXd reduced_;         // [8, joints] J, reduced to a unit matrix in the columns of its pivots
+  MatrixXd reduced_;                        // [8, joints] S, as Eliminate leaves it
+  std::array<int, kMaxArmJoints> joint_{};  // in the order of elimination; those of pivots first
+  std::array<int, 6> pivot_row_{};
+  int rank_ = 0;
   MatrixXd free_, momenta_;  // n_k and M n_k, column by column
 };
 

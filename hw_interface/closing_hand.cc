@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "vmech/hw_interface/displaced.h"
 #include "vmech/kinematics/rotation_error.h"
 
 namespace vmech {

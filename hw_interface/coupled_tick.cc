@@ -59,6 +59,9 @@ CoupledTick::CoupledTick(const KinematicTree& tree, int grasp, const VectorXd& q
       grasp_(GraspFrameOf(tree, grasp)),
       dynamics_(tree, grasp_, AtTheMechanism(options), period, q),
       period_(period),
+      fade_(std::exp(-period / kFade)),
+      compliance_((options.coupling.stiffness.array() > 0)
+                      .select(options.coupling.stiffness.cwiseInverse(), 0)),
       hand_(AtTheMechanism(options), options.grasp_rate / options.scale, period),
       peaks_(tree.mechanism) {}
 
@@ -146,7 +149,7 @@ void CoupledTick::Feel(bool held) noexcept {
 ///   E = F'K^-1 F / 2,   (1 + c)/2 F.dX <= (1 - c^2) E   by   c = 1 - F.dX/2E.
 void CoupledTick::Fade() noexcept {
   const double force = fading_.head<3>().norm(), most = options_.grasp_rate * period_;
-  double left = std::exp(-period_ / kFade);
+  double left = fade_;
   if (force * (1 - left) > most) left = 1 - most / force;
   const double energy = FadingEnergy(), work = period_ * fading_.dot(V_WH_);
   if (work > 0) left *= std::max(0.0, 1 - work / (2 * energy));
@@ -154,12 +157,7 @@ void CoupledTick::Fade() noexcept {
 }
 
 double CoupledTick::FadingEnergy() const noexcept {
-  double energy = 0;
-  for (int i = 0; i < 6; ++i) {
-    const double K = options_.coupling.stiffness[i];
-    if (K > 0) energy += 0.5 * fading_[i] * fading_[i] / K;
-  }
-  return energy;
+  return 0.5 * fading_.dot(compliance_.cwiseProduct(fading_));
 }
 
 void CoupledTick::Account(CoupledStatus status, std::span<double> channels) noexcept {

@@ -74,7 +74,8 @@ class CoupledTick : public Tick {
   CoupledTickOptions options_;
   vmech::GraspFrame grasp_;  // where the hand takes hold by name
   CoupledDynamics dynamics_;
-  double period_;
+  double period_, fade_;  // fade_: what is left of a fading wrench after a period
+  Vector6d compliance_;   // K^-1, zero where K is
   ClosingHand hand_;
   bool has_hand_ = false, holds_ = true;
   Vector6d felt_ = Vector6d::Zero();    // of the mechanism that is held

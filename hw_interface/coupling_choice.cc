@@ -135,7 +135,7 @@ double InertiaRatio(const KinematicTree& tree, const GraspFrame& grasp, const Ve
 double StableInertiaShare(const KinematicTree& tree, const GraspFrame& grasp, const VectorXd& q,
                           const DeviceInfo& device) {
   const double ratio = InertiaRatio(tree, grasp, q, device);
-  return ratio > 0 ? std::min(1.0, 0.5 / ratio) : 1;
+  return ratio > 0 ? std::min(1.0, 0.4 / ratio) : 1;
 }
 
 }  // namespace vmech

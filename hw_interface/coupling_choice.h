@@ -37,7 +37,7 @@ double InertiaRatio(const KinematicTree& tree, const GraspFrame& grasp, const Ve
                     const DeviceInfo& device);
 
 /// The share of a mechanism's inertia that a device can render from measured accelerations, as the
-/// paper does, in (0, 1]: min(1, 1/2 / lambda). Delay in the acceleration turns rendered inertia
+/// paper does, in (0, 1]: min(1, 0.4 / lambda). Delay in the acceleration turns rendered inertia
 /// against the device's own; at equality it swings up (RenderingBounds::stable_inertia). 1 for a
 /// device that states no masses.
 double StableInertiaShare(const KinematicTree& tree, const GraspFrame& grasp, const VectorXd& q,

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "vmech/hw_interface/displaced.h"
 #include "vmech/hw_interface/estimators.h"
 #include "vmech/kinematics/rotation_error.h"
 #include "vmech/solvers/stopping_rule.h"
@@ -45,9 +44,17 @@ bool HandObserver::Suits(const DeviceInfo& info) {
 HandObserver::HandObserver(const HandObserverOptions& options, const DeviceInfo& info)
     : period_(info.period),
       arm_(Checked(info).arm),
+      lower_(arm_.joints()),
+      upper_(arm_.joints()),
       factor_(arm_.joints()),
       yielding_(MatrixXd::Zero(arm_.joints(), 6)) {
   options.Validate();
+  const KinematicTree& tree = arm_.description().tree;
+  for (const TreeNode& node : tree.nodes) {
+    if (node.v < 0) continue;
+    lower_[node.v] = tree.mechanism.joints[node.joint].lower[node.freedom];
+    upper_[node.v] = tree.mechanism.joints[node.joint].upper[node.freedom];
+  }
   gain_ = GainsFor(options.bandwidth, period_);
   resolution_ << Vector3d::Constant(info.linear.resolution),
       Vector3d::Constant(info.angular.resolution);
@@ -90,12 +97,8 @@ void HandObserver::Update(const MasterState& state, const Vector6d& F_Ho_D, int 
 }
 
 bool HandObserver::AtStop(const MasterState& state) const noexcept {
-  const KinematicTree& tree = arm_.description().tree;
-  for (const TreeNode& node : tree.nodes) {
-    if (node.v < 0) continue;
-    const Joint& joint = tree.mechanism.joints[node.joint];
-    const double x = state.q[node.v];
-    if (x > joint.upper[node.freedom] || x < joint.lower[node.freedom]) return true;
+  for (int i = 0; i < arm_.joints(); ++i) {
+    if (state.q[i] > upper_[i] || state.q[i] < lower_[i]) return true;
   }
   return false;
 }

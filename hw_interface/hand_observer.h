@@ -54,6 +54,7 @@ class HandObserver {
   double period_;
   std::array<double, 3> gain_;
   ArmModel arm_;
+  VectorXd lower_, upper_;  // stops of the joints
   Eigen::LLT<MatrixXd> factor_;
   MatrixXd yielding_;  // M^-1 J' [joints, 6]
   Matrix6d mobility_ = Matrix6d::Zero();

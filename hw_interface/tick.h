@@ -23,16 +23,8 @@ struct Registration {
   Posed X_WD;
   Matrix3d R_HK = Matrix3d::Identity();
 
-  Posed HandInWorld(const Posed& X_DH) const noexcept {
-    Posed X_WK = X_WD * X_DH;
-    X_WK.R *= R_HK;
-    return X_WK;
-  }
-  ObservedHand Observed(const Posed& X_DH, const Vector6d& V_DH) const noexcept {
-    ObservedHand hand{HandInWorld(X_DH), {}};
-    hand.V_WH << X_WD.R * V_DH.head<3>(), X_WD.R * V_DH.tail<3>();
-    return hand;
-  }
+  Posed HandInWorld(const Posed& X_DH) const noexcept;
+  ObservedHand Observed(const Posed& X_DH, const Vector6d& V_DH) const noexcept;
 };
 
 /// The registration that puts the hand where the grasp frame is, with the device's axes along R_WD:

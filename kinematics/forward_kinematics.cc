@@ -70,13 +70,16 @@ RelativeMotion<T> MotionAcross(const TreeNode& node, const Pose<T>& X_WB, const 
 }  // namespace
 
 void Sines(const double* angles, int count, double* sine, double* cosine) noexcept {
+  // Number by number: loading four at once would wait for the last of them to be written.
   for (int k = 0; k < count; k += Packet::kLanes) {
-    const int lanes = std::min(Packet::kLanes, count - k);
-    const Packet angle =
-        Packet::Of([&](int lane) { return lane < lanes ? angles[k + lane] : 0.0; });
     Packet s, c;
-    SinCos(angle, &s, &c);
-    for (int lane = 0; lane < lanes; ++lane) {
+    SinCos(Packet::Of([&](int lane) { return angles[std::min(k + lane, count - 1)]; }), &s, &c);
+    if (k + Packet::kLanes <= count) {
+      s.Store(sine + k);
+      c.Store(cosine + k);
+      continue;
+    }
+    for (int lane = 0; k + lane < count; ++lane) {
       sine[k + lane] = s[lane];
       cosine[k + lane] = c[lane];
     }
@@ -166,11 +169,19 @@ void MoveCoordinates(const KinematicTree& tree, const T* dv, T* q) {
       continue;
     }
     const Vector3<T> turn(dv[node.v], dv[node.v + 1], dv[node.v + 2]);
-    const T angle = sqrt(turn.squaredNorm());
-    T sine, cosine;
-    SinCos(0.5 * angle, &sine, &cosine);
-    // sin(angle/2)/angle, whose limit is 1/2.
-    const Vector3<T> e = Select(angle > T(1e-8), sine / angle, T(0.5)) * turn;
+    const T angle2 = turn.squaredNorm();
+    T per_angle, cosine;  // sin(angle/2)/angle and cos(angle/2)
+    if (AllLanes(angle2 <= T(0.01))) {
+      const T x = 0.25 * angle2;
+      per_angle = 0.5 - x * (1.0 / 12 - x * (1.0 / 240 - x * (1.0 / 10080 - x * (1.0 / 725760))));
+      cosine = 1.0 - x * (1.0 / 2 - x * (1.0 / 24 - x * (1.0 / 720 - x * (1.0 / 40320))));
+    } else {
+      const T angle = sqrt(angle2);
+      T sine;
+      SinCos(0.5 * angle, &sine, &cosine);
+      per_angle = Select(angle > T(1e-8), sine / angle, T(0.5));
+    }
+    const Vector3<T> e = per_angle * turn;
     T* wxyz = q + node.q;
     const T w = wxyz[0];
     const Vector3<T> xyz(wxyz[1], wxyz[2], wxyz[3]);

@@ -97,20 +97,17 @@ PointMotion<T> MotionAt(const TreeWorkspace<T>& ws, int node, const Vector3<T>& 
 }  // namespace
 
 template <typename T>
-void SetLoopState(const Loop& loop, const Pose<T>& X_WF, const Pose<T>& X_WM, LoopState<T>* state) {
+void LoopError(const Loop& loop, const Matrix3<T>& R_FM, const Vector3<T>& p_FM,
+               LoopState<T>* state) {
   LoopState<T>& s = *state;
-  s.R_WF = X_WF.R;
-  s.p_WM = X_WM.p;
-  s.p_FM_W = X_WM.p - X_WF.p;
-  s.R_FM = X_WF.R.transpose() * X_WM.R;
-  const Vector3<T> p_FM = X_WF.R.transpose() * s.p_FM_W;
-  const Vector3<T> y_M = s.R_FM.col(1);
+  s.R_FM = R_FM;
+  const Vector3<T> y_M = R_FM.col(1);
   s.n_F = y_M.cross(Vector3<T>::UnitX());
   // e2 = C dq moves M back to where it belongs in F.
-  s.e2 = -ProjectOnRows<T>(loop, s, p_FM, ForbiddenRotation<T>(loop.type, s.R_FM));
+  s.e2 = -ProjectOnRows<T>(loop, s, p_FM, ForbiddenRotation<T>(loop.type, R_FM));
   if (loop.type == JointType::kUniversal) s.e2[3] = -y_M.x();
   if (loop.type == JointType::kScrew) {
-    s.e2[4] = loop.pitch * ScrewTurn<T>(s.R_FM, p_FM.z(), loop.pitch) - p_FM.z();
+    s.e2[4] = loop.pitch * ScrewTurn<T>(R_FM, p_FM.z(), loop.pitch) - p_FM.z();
   }
 }
 
@@ -119,8 +116,13 @@ void LoopErrors(const KinematicTree& tree, TreeWorkspace<T>* ws) {
   for (size_t l = 0; l < tree.loops.size(); ++l) {
     const Loop& loop = tree.loops[l];
     const JointPlacement& place = tree.placements[loop.joint];
-    SetLoopState<T>(loop, PoseInWorld(*ws, place.first_node, place.X_AF),
-                    PoseInWorld(*ws, place.second_node, place.X_BM), &ws->loops[l]);
+    LoopState<T>& s = ws->loops[l];
+    const Pose<T> X_WF = PoseInWorld(*ws, place.first_node, place.X_AF);
+    const Pose<T> X_WM = PoseInWorld(*ws, place.second_node, place.X_BM);
+    s.R_WF = X_WF.R;
+    s.p_WM = X_WM.p;
+    s.p_FM_W = X_WM.p - X_WF.p;
+    LoopError<T>(loop, X_WF.R.transpose() * X_WM.R, X_WF.R.transpose() * s.p_FM_W, &s);
   }
 }
 
@@ -283,14 +285,14 @@ T LargestLoopError(const KinematicTree& tree, const TreeWorkspace<T>& ws) {
 }
 
 // NOLINTBEGIN(bugprone-macro-parentheses): T is a type
-#define VMECH_INSTANTIATE(T)                                                                 \
-  template void SetLoopState<T>(const Loop&, const Pose<T>&, const Pose<T>&, LoopState<T>*); \
-  template void LoopErrors<T>(const KinematicTree&, TreeWorkspace<T>*);                      \
-  template void LoopJacobian<T>(const KinematicTree&, TreeWorkspace<T>*);                    \
-  template void LoopAccelerationBias<T>(const KinematicTree&, TreeWorkspace<T>*);            \
-  template Vector3<T> CutJointCoordinates<T>(const Loop&, const LoopState<T>&);              \
-  template CutJointFreedoms<T> FreedomsOfCutJoint<T>(const Loop&, const LoopState<T>&);      \
-  template Vector3<T> CutJointRates<T>(const KinematicTree&, const TreeWorkspace<T>&, int);  \
+#define VMECH_INSTANTIATE(T)                                                                    \
+  template void LoopError<T>(const Loop&, const Matrix3<T>&, const Vector3<T>&, LoopState<T>*); \
+  template void LoopErrors<T>(const KinematicTree&, TreeWorkspace<T>*);                         \
+  template void LoopJacobian<T>(const KinematicTree&, TreeWorkspace<T>*);                       \
+  template void LoopAccelerationBias<T>(const KinematicTree&, TreeWorkspace<T>*);               \
+  template Vector3<T> CutJointCoordinates<T>(const Loop&, const LoopState<T>&);                 \
+  template CutJointFreedoms<T> FreedomsOfCutJoint<T>(const Loop&, const LoopState<T>&);         \
+  template Vector3<T> CutJointRates<T>(const KinematicTree&, const TreeWorkspace<T>&, int);     \
   template T LargestLoopError<T>(const KinematicTree&, const TreeWorkspace<T>&);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Packet)

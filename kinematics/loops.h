@@ -21,9 +21,10 @@ namespace vmech {
 template <typename T>
 void LoopErrors(const KinematicTree& tree, TreeWorkspace<T>* ws);
 
-/// The same of one loop, from the poses of its anchors.
+/// The same of one loop, from where M is in F; writes R_FM, n_F and e2.
 template <typename T>
-void SetLoopState(const Loop& loop, const Pose<T>& X_WF, const Pose<T>& X_WM, LoopState<T>* state);
+void LoopError(const Loop& loop, const Matrix3<T>& R_FM, const Vector3<T>& p_FM,
+               LoopState<T>* state);
 
 /// C = -d e2 / dv at a closed loop (paper eq. 4: e2 = C dq). Needs LoopErrors; writes loop_columns.
 template <typename T>

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include "vmech/kinematics/rotation_error.h"
 
 namespace vmech {
 namespace {
@@ -102,12 +103,6 @@ RotationRates RatesOfRotationVector(const Vector3d& r, const Vector3d& rd, const
   return {J(rd), J(rdd) - dA * stretch * r_rd + dB * stretch * r.cross(r_rd) + B * rd.cross(r_rd)};
 }
 
-Matrix3d RotationOfVector(const Vector3d& r) {
-  const double angle = r.norm();
-  if (angle == 0) return Matrix3d::Identity();
-  return Eigen::AngleAxisd(angle, r / angle).toRotationMatrix();
-}
-
 }  // namespace
 
 MotionLaw MotionLaw::Uniform(double start, double speed, double acceleration) {
@@ -180,7 +175,7 @@ HandSample HandLaw::At(double t) const {
     r[k] = u.position, rd[k] = u.velocity, rdd[k] = u.acceleration;
   }
   HandSample hand;
-  hand.X_WH = {R_W0_ * RotationOfVector(r), p};
+  hand.X_WH = {R_W0_ * RotationBy(r), p};
   const RotationRates rates = RatesOfRotationVector(r, rd, rdd);
   hand.V_WH << v, hand.X_WH.R * rates.w;
   hand.A_WH << a, hand.X_WH.R * rates.alpha;

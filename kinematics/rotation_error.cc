@@ -76,6 +76,26 @@ Vector6d HandError(const Posed& X_WG, const Posed& X_WH) {
   return Stacked<double>(X_WH.p - X_WG.p, Logarithm(X_WH.R * X_WG.R.transpose()));
 }
 
+Posed Displaced(const Posed& X, const Vector6d& way) noexcept {
+  return {RotationBy(way.tail<3>()) * X.R, X.p + way.head<3>()};
+}
+
+Matrix3d RotationBy(const Vector3d& r) noexcept {
+  const double x2 = r.squaredNorm();
+  double s = 0, c = 0;  // sin x/x and (1 - cos x)/x^2
+  if (x2 < 0.01) {
+    s = 1 - x2 / 6 * (1 - x2 / 20 * (1 - x2 / 42 * (1 - x2 / 72)));
+    c = 0.5 - x2 / 24 * (1 - x2 / 30 * (1 - x2 / 56 * (1 - x2 / 90)));
+  } else {
+    const double x = std::sqrt(x2), half = std::sin(x / 2);
+    s = std::sin(x) / x;
+    c = 2 * half * half / x2;
+  }
+  Matrix3d R = c * r * r.transpose() + CrossMatrix<double>(s * r);
+  R.diagonal().array() += 1 - c * x2;
+  return R;
+}
+
 Vector3d RotationErrorOf(RotationError kind, const Matrix3d& R_E) {
   return kind == RotationError::kLogarithm ? Logarithm(R_E) : SkewPart(R_E);
 }

@@ -16,6 +16,13 @@ enum class RotationError {
 /// e1 [6; m, rad]: displacement and logarithm of the rotation that lead from G to H, world axes.
 Vector6d HandError(const Posed& X_WG, const Posed& X_WH);
 
+/// Its inverse: the pose to which `way` [dp; dr] leads from X, HandError(X, Displaced(X, way)) =
+/// way for turns below half a turn.
+Posed Displaced(const Posed& X, const Vector6d& way) noexcept;
+
+/// The rotation about r by |r| [rad].
+Matrix3d RotationBy(const Vector3d& r) noexcept;
+
 /// The error e(R_E) [rad].
 Vector3d RotationErrorOf(RotationError kind, const Matrix3d& R_E);
 

@@ -54,11 +54,20 @@ inline Four PointInWorld(const Axes& X, const Vector3d& p) noexcept {
 inline Axes operator*(const Axes& X, const Posed& Y) noexcept {
   return Turned(X, Y.R, PointInWorld(X, Y.p));
 }
+inline Axes AxesOf(const Posed& X) noexcept {
+  return {FourOf(X.R.col(0)), FourOf(X.R.col(1)), FourOf(X.R.col(2)), FourOf(X.p)};
+}
+inline Matrix3d RotationOf(const Axes& X) noexcept {
+  Matrix3d R;
+  for (int i = 0; i < 3; ++i) {
+    R(i, 0) = X.x[i];
+    R(i, 1) = X.y[i];
+    R(i, 2) = X.z[i];
+  }
+  return R;
+}
 inline Posed PoseOf(const Axes& X) noexcept {
-  Posed pose;
-  pose.R << Vector3Of(X.x), Vector3Of(X.y), Vector3Of(X.z);
-  pose.p = Vector3Of(X.p);
-  return pose;
+  return {RotationOf(X), Vector3Of(X.p)};
 }
 
 inline Screw& operator+=(Screw& a, const Screw& b) noexcept {

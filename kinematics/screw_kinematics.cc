@@ -82,9 +82,11 @@ ScrewWorkspace::ScrewWorkspace(const KinematicTree& tree)
 
 void ForwardKinematics(const KinematicTree& tree, const double* q, ScrewWorkspace* ws) noexcept {
   Sines(q, tree.nq, ws->sine.data(), ws->cosine.data());
-  ScrewWorkspace::Node* state = ws->nodes.data();
-  for (const TreeNode& node : tree.nodes) {
-    Axes X = ws->at(node.parent).X * node.X_PF;
+  Axes X;
+  for (int i = 0; i < static_cast<int>(tree.nodes.size()); ++i) {
+    const TreeNode& node = tree.nodes[i];
+    if (node.parent != i - 1) X = ws->at(node.parent).X;  // else in registers
+    X = X * node.X_PF;
     switch (node.motion) {
       case NodeMotion::kFixed:
         break;
@@ -104,7 +106,7 @@ void ForwardKinematics(const KinematicTree& tree, const double* q, ScrewWorkspac
         break;
       }
     }
-    (++state)->X = X;
+    ws->at(i).X = X;
   }
 }
 
@@ -136,9 +138,12 @@ void JointScrews(const KinematicTree& tree, ScrewWorkspace* ws) noexcept {
 }
 
 void ForwardVelocities(const KinematicTree& tree, const double* v, ScrewWorkspace* ws) noexcept {
-  ScrewWorkspace::Node* state = ws->nodes.data();
-  for (const TreeNode& node : tree.nodes) {
-    (++state)->V = ws->at(node.parent).V + JointTwist(node, v, *ws);
+  Screw V;
+  for (int i = 0; i < static_cast<int>(tree.nodes.size()); ++i) {
+    const TreeNode& node = tree.nodes[i];
+    if (node.parent != i - 1) V = ws->at(node.parent).V;
+    V += JointTwist(node, v, *ws);
+    ws->at(i).V = V;
   }
 }
 
@@ -153,12 +158,13 @@ void VelocityProducts(const KinematicTree& tree, ScrewWorkspace* ws) noexcept {
 
 void ForwardAccelerations(const KinematicTree& tree, const double* vdot,
                           ScrewWorkspace* ws) noexcept {
-  ScrewWorkspace::Node* state = ws->nodes.data();
-  for (const TreeNode& node : tree.nodes) {
-    ++state;
-    Screw A = ws->at(node.parent).A + state->c;
+  Screw A = ws->at(-1).A;
+  for (int i = 0; i < static_cast<int>(tree.nodes.size()); ++i) {
+    const TreeNode& node = tree.nodes[i];
+    if (node.parent != i - 1) A = ws->at(node.parent).A;
+    A += ws->at(i).c;
     if (vdot != nullptr) A += JointTwist(node, vdot, *ws);
-    state->A = A;
+    ws->at(i).A = A;
   }
 }
 
@@ -181,7 +187,9 @@ void LoopErrors(const KinematicTree& tree, ScrewWorkspace* ws) noexcept {
     LoopScrews& s = ws->loops[l];
     s.F = ws->at(place.first_node).X * place.X_AF;
     const Axes M = ws->at(place.second_node).X * place.X_BM;
-    SetLoopState(loop, PoseOf(s.F), PoseOf(M), &s.state);
+    const Four p_FM = TurnedBack(s.F, M.p - s.F.p);
+    const Axes R_FM{TurnedBack(s.F, M.x), TurnedBack(s.F, M.y), TurnedBack(s.F, M.z)};
+    LoopError<double>(loop, RotationOf(R_FM), Vector3Of(p_FM), &s.state);
     s.F.p = M.p;
   }
 }

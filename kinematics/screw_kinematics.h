@@ -14,7 +14,7 @@ namespace vmech {
 
 /// The state of one loop.
 struct LoopScrews {
-  LoopState<double> state;  ///< but for `bias`
+  LoopState<double> state;  ///< R_FM, n_F and e2 alone
   Axes F;                   ///< the cut joint's first anchor, at the second's origin M
   Screw rows[6];            ///< what a unit multiplier of each equation does to the second link
 };

@@ -33,22 +33,35 @@ void AddTransposed(double w, const double* C, int rows, const double* d, const d
   for (int j = 0; j < n; ++j) y[j] = b[j] + w * DotOfFours(C + j * rows, d, rows);
 }
 
-/// The solves. The multipliers act as forces s = C'mu, which grow by w C'(C x - d) = G x - w C'd:
-/// they need C only in the end. `right` = b + w C'd; `total` becomes the sum of all x, x the last.
+/// The solves. The multipliers act as forces C'mu = b - A x, so that C is needed only in the end:
+/// (A + w C'C) x+ = A x + w C'd. `right` = b + w C'd; `total` becomes the sum of all x. `scratch`
+/// is for sizes not known here.
 template <int kSize>
-void Iterate(const double* L, const double* G, const double* b, const double* right, int size,
-             double* s, double* total, double* x) noexcept {
+void Iterate(const double* L, const double* A, const double* b, const double* right, int size,
+             double* scratch, double* total, double* x) noexcept {
   const int n = kSize > 0 ? kSize : size;
-  for (int i = 0; i < n; ++i) s[i] = total[i] = 0;
-  for (int k = 0; k < kSolves; ++k) {
-    for (int i = 0; i < n; ++i) x[i] = right[i] - s[i];
-    SolveLdlt<kSize>(L, n, x);
-    for (int i = 0; i < n; ++i) s[i] -= right[i] - b[i];
-    for (int j = 0; j < n; ++j) {
-      total[j] += x[j];
-      AddScaled(x[j], G + j * n, n, s);
+  double registers[kSize > 0 ? kSize : 1];
+  double* const y = kSize > 0 ? registers : scratch;
+  std::copy_n(right, n, y);
+  SolveLdlt<kSize>(L, n, y);
+  std::copy_n(y, n, total);
+  for (int k = 1; k < kSolves; ++k) {
+    if constexpr (kSize > 0) {
+      double next[kSize];
+      Unrolled<kSize>([&](auto i) {
+        next[i] = right[i] - b[i];
+        Unrolled<kSize>([&](auto j) { next[i] += A[j * n + i] * y[j]; });
+      });
+      Unrolled<kSize>([&](auto i) { y[i] = next[i]; });
+    } else {
+      std::copy_n(y, n, x);
+      for (int i = 0; i < n; ++i) y[i] = right[i] - b[i];
+      for (int j = 0; j < n; ++j) AddScaled(x[j], A + j * n, n, y);
     }
+    SolveLdlt<kSize>(L, n, y);
+    for (int i = 0; i < n; ++i) total[i] += y[i];
   }
+  std::copy_n(y, n, x);
 }
 
 }  // namespace
@@ -74,43 +87,54 @@ struct SaddleSystem::Kernels {
 
 SaddleSystem::SaddleSystem(int unknowns, int equations)
     : kernels_(Kernels::ForSize(unknowns)),
+      equations_(equations),
       G_(MatrixXd::Zero(unknowns, unknowns)),
+      A_(G_),
       L_(G_),
-      mu_(VectorXd::Zero(equations)),
       right_(VectorXd::Zero(unknowns)),
-      s_(right_),
+      scratch_(right_),
       total_(right_) {
   assert(equations % 4 == 0);
 }
 
-bool SaddleSystem::Factor(const MatrixXd& A, const MatrixXd& C) noexcept {
+void SaddleSystem::SetConstraints(const MatrixXd& C) noexcept {
+  if (equations_ > 0) kernels_.gram(weight_, C.data(), equations_, size(), G_.data());
+}
+
+bool SaddleSystem::Factor(const MatrixXd& A) noexcept {
   const int n = size();
-  if (C.rows() > 0) kernels_.gram(weight_, C.data(), equations(), n, G_.data());
-  for (int i = 0; i < n * n; ++i) L_.data()[i] = A.data()[i] + G_.data()[i];
+  for (int i = 0; i < n * n; ++i) {
+    A_.data()[i] = A.data()[i];
+    L_.data()[i] = A.data()[i] + G_.data()[i];
+  }
   return kernels_.factor(n, L_.data());
 }
 
 void SaddleSystem::Solve(const MatrixXd& C, const VectorXd& b, const VectorXd& d,
                          VectorXd* x) noexcept {
   const int n = size();
-  if (C.rows() == 0) {
+  if (equations_ == 0) {
     std::copy_n(b.data(), n, x->data());
     kernels_.solve(L_.data(), n, x->data());
     return;
   }
-  kernels_.add_transposed(weight_, C.data(), equations(), d.data(), b.data(), n, right_.data());
-  kernels_.iterate(L_.data(), G_.data(), b.data(), right_.data(), n, s_.data(), total_.data(),
+  kernels_.add_transposed(weight_, C.data(), equations_, d.data(), b.data(), n, right_.data());
+  kernels_.iterate(L_.data(), A_.data(), b.data(), right_.data(), n, scratch_.data(), total_.data(),
                    x->data());
-  for (int i = 0; i < equations(); ++i) mu_[i] = -kSolves * weight_ * d[i];
-  for (int j = 0; j < n; ++j) {
-    AddScaled(weight_ * total_[j], C.data() + j * equations(), equations(), mu_.data());
+}
+
+void SaddleSystem::TakeMultipliers(const MatrixXd& C, const VectorXd& d,
+                                   VectorXd* mu) const noexcept {
+  for (int i = 0; i < equations_; ++i) (*mu)[i] = -kSolves * weight_ * d[i];
+  for (int j = 0; j < size(); ++j) {
+    AddScaled(weight_ * total_[j], C.data() + j * equations_, equations_, mu->data());
   }
 }
 
 void SaddleSystem::Approach(const MatrixXd& C, const VectorXd& d, VectorXd* x) noexcept {
   x->setZero();
-  if (C.rows() == 0) return;
-  kernels_.add_transposed(weight_, C.data(), equations(), d.data(), x->data(), size(), x->data());
+  if (equations_ == 0) return;
+  kernels_.add_transposed(weight_, C.data(), equations_, d.data(), x->data(), size(), x->data());
   kernels_.solve(L_.data(), size(), x->data());
 }
 

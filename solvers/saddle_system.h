@@ -27,12 +27,15 @@ class SaddleSystem {
   /// w; equations are taken to be scaled alike.
   void SetWeight(double weight) noexcept { weight_ = weight; }
 
-  /// A [unknowns, unknowns], whose lower triangle counts, and C [equations, unknowns]. False if the
-  /// sum is not positive definite.
-  [[nodiscard]] bool Factor(const MatrixXd& A, const MatrixXd& C) noexcept;
-  /// Writes x, for the C that was factored; its multipliers are then in mu() [equations].
+  /// Takes C [equations, unknowns]. It is not copied: the same is to be given to what follows.
+  void SetConstraints(const MatrixXd& C) noexcept;
+  /// A [unknowns, unknowns], whose lower triangle counts. False if the sum is not positive
+  /// definite.
+  [[nodiscard]] bool Factor(const MatrixXd& A) noexcept;
+  /// Writes x.
   void Solve(const MatrixXd& C, const VectorXd& b, const VectorXd& d, VectorXd* x) noexcept;
-  const VectorXd& mu() const noexcept { return mu_; }
+  /// The multipliers [equations] of the x found last, for the same d.
+  void TakeMultipliers(const MatrixXd& C, const VectorXd& d, VectorXd* mu) const noexcept;
   /// The smallest x, in the metric of A, that comes near C x = d: one solve with b = 0.
   void Approach(const MatrixXd& C, const VectorXd& d, VectorXd* x) noexcept;
 
@@ -42,12 +45,12 @@ class SaddleSystem {
  private:
   struct Kernels;
   int size() const noexcept { return static_cast<int>(right_.size()); }
-  int equations() const noexcept { return static_cast<int>(mu_.size()); }
 
   const Kernels& kernels_;
   double weight_ = 1;
-  MatrixXd G_, L_;  // w C'C and the factors
-  VectorXd mu_, right_, s_, total_;
+  int equations_;
+  MatrixXd G_, A_, L_;                // w C'C, A and the factors
+  VectorXd right_, scratch_, total_;  // total_: sum of the solves
 };
 
 }  // namespace vmech

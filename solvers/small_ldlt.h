@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstring>
+#include <type_traits>
+#include <utility>
 
 #include "vmech/solvers/four.h"
 
@@ -41,46 +43,77 @@ inline void AddScaled(double s, const double* x, int m, double* y) noexcept {
   for (; k < m; ++k) y[k] += s * x[k];
 }
 
+/// body(0), body(1), .. body(kCount - 1), each with a constant for its argument: what they work on
+/// stays in registers. A loop that the compiler vectorises waits for the stores of its last turn.
+template <int kCount, typename Body>
+inline void Unrolled(const Body& body) noexcept {
+  [&]<int... k>(std::integer_sequence<int, k...>) {
+    (body(std::integral_constant<int, k>()), ...);
+  }
+  (std::make_integer_sequence<int, kCount>());
+}
+
 /// The lower triangle of a symmetric matrix becomes unit L, with 1/D on the diagonal. False if it
 /// is not positive definite.
 template <int kSize>
 [[nodiscard]] bool FactorLdlt(int size, double* L) noexcept {
-  const int n = kSize > 0 ? kSize : size;
-  for (int j = 0; j < n; ++j) {
-    double* const L_j = L + j * n;
-    if (!(L_j[j] > 0)) return false;
-    const double inverse = 1 / L_j[j];
-    L_j[j] = inverse;
-    for (int k = j + 1; k < n; ++k) {
-      const double scaled = L_j[k] * inverse;
-      if constexpr (kSize > 0) {
-        for (int i = k; i < n; ++i) L[k * n + i] -= scaled * L_j[i];
-      } else if (scaled != 0) {
-        AddScaled(-scaled, L_j + k, n - k, L + k * n + k);
+  if constexpr (kSize > 0) {
+    constexpr int n = kSize;
+    double a[n * n];
+    std::memcpy(a, L, sizeof(a));
+    bool positive = true;
+    Unrolled<n>([&](auto j) {
+      positive &= a[j * n + j] > 0;
+      const double inverse = 1 / a[j * n + j];
+      a[j * n + j] = inverse;
+      Unrolled<n - 1 - j>([&](auto below) {
+        constexpr int k = j + 1 + below;
+        const double scaled = a[j * n + k] * inverse;
+        Unrolled<n - k>([&](auto i) { a[k * n + k + i] -= scaled * a[j * n + k + i]; });
+        a[j * n + k] = scaled;
+      });
+    });
+    std::memcpy(L, a, sizeof(a));
+    return positive;
+  } else {
+    const int n = size;
+    for (int j = 0; j < n; ++j) {
+      double* const L_j = L + j * n;
+      if (!(L_j[j] > 0)) return false;
+      const double inverse = 1 / L_j[j];
+      L_j[j] = inverse;
+      for (int k = j + 1; k < n; ++k) {
+        const double scaled = L_j[k] * inverse;
+        if (scaled != 0) AddScaled(-scaled, L_j + k, n - k, L + k * n + k);
       }
+      for (int i = j + 1; i < n; ++i) L_j[i] *= inverse;
     }
-    for (int i = j + 1; i < n; ++i) L_j[i] *= inverse;
+    return true;
   }
-  return true;
 }
 
 /// x = (L D L')^-1 x.
 template <int kSize>
 void SolveLdlt(const double* L, int size, double* x) noexcept {
-  const int n = kSize > 0 ? kSize : size;
-  for (int j = 0; j < n; ++j) {
-    if constexpr (kSize > 0) {
-      for (int i = j + 1; i < n; ++i) x[i] -= L[j * n + i] * x[j];
-    } else {
-      AddScaled(-x[j], L + j * n + j + 1, n - j - 1, x + j + 1);
-    }
-  }
-  for (int j = n - 1; j >= 0; --j) {
-    x[j] *= L[j * n + j];
-    if constexpr (kSize > 0) {
-      for (int i = j + 1; i < n; ++i) x[j] -= L[j * n + i] * x[i];
-    } else {
-      x[j] -= Dot(L + j * n + j + 1, x + j + 1, n - j - 1);
+  if constexpr (kSize > 0) {
+    constexpr int n = kSize;
+    double y[n];
+    Unrolled<n>([&](auto i) { y[i] = x[i]; });
+    Unrolled<n>([&](auto j) {
+      Unrolled<n - 1 - j>([&](auto i) { y[j + 1 + i] -= L[j * n + j + 1 + i] * y[j]; });
+    });
+    Unrolled<n>([&](auto from_below) {
+      constexpr int j = n - 1 - from_below;
+      y[j] *= L[j * n + j];
+      // What was found last comes last: the others need not wait for it.
+      Unrolled<n - 1 - j>([&](auto i) { y[j] -= L[j * n + n - 1 - i] * y[n - 1 - i]; });
+    });
+    Unrolled<n>([&](auto i) { x[i] = y[i]; });
+  } else {
+    const int n = size;
+    for (int j = 0; j < n; ++j) AddScaled(-x[j], L + j * n + j + 1, n - j - 1, x + j + 1);
+    for (int j = n - 1; j >= 0; --j) {
+      x[j] = x[j] * L[j * n + j] - Dot(L + j * n + j + 1, x + j + 1, n - j - 1);
     }
   }
 }

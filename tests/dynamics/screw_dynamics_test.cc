@@ -143,7 +143,7 @@ TEST_P(EveryTreeInScrews, HasTheSameMassMatrixAndMomenta) {
   EXPECT_LE((M - expected).norm(), kIdentity * expected.norm());
   VectorXd momenta(tree_.nv);
   ForwardVelocities(tree_, v_.data(), &ws_);
-  Momenta(tree_, inertias_, &ws_);
+  Momenta(tree_, &ws_);
   GeneralisedForces(tree_, ws_, momenta.data());
   EXPECT_LE((momenta - expected * v_).norm(), kIdentity * momenta.norm());
   const double energy = 0.5 * v_.dot(expected * v_);

@@ -57,7 +57,10 @@ HeldTick::HeldTick(const std::string& example, Architecture architecture)
                                           device_.angular.resolution);
   registration_ = GraspedAt(Matrix3d::Identity(), samples_[0].X_DH, tick_->GraspFrame());
   channels_.resize(tick_->ChannelNames().size());
-  ObserveOn(samples_[0]);
+  for (const MasterState& sample : samples_) {
+    ObserveOn(sample);
+    hands_.push_back(observed_);
+  }
 }
 
 const MasterState& HeldTick::NextSample() {
@@ -82,7 +85,10 @@ void HeldTick::Observe() {
 }
 
 void HeldTick::Step() {
-  StepOn(NextSample());
+  const MasterState& state = NextSample();
+  observed_ = hands_[next_];
+  if (!forward_) observed_.V_WH = -observed_.V_WH;
+  StepOn(state);
 }
 
 void HeldTick::Filter() {

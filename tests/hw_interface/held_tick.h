@@ -55,6 +55,7 @@ class HeldTick {
   std::unique_ptr<ArmTorques> torques_;
   Registration registration_;
   ObservedHand observed_;
+  std::vector<ObservedHand> hands_;  // of the samples, on the way there
   TickOutput wanted_;
   MasterCommand command_;
   std::vector<double> channels_;

@@ -39,23 +39,29 @@ class EverySize : public testing::TestWithParam<int> {
 };
 
 TEST_P(EverySize, SolutionFulfilsBothEquationsWithRedundantRows) {
-  ASSERT_TRUE(s_.saddle.Factor(s_.A, s_.C));
+  s_.saddle.SetConstraints(s_.C);
+  ASSERT_TRUE(s_.saddle.Factor(s_.A));
   s_.saddle.Solve(s_.C, s_.b, s_.d, &x_);
-  const VectorXd& mu = s_.saddle.mu();
+  VectorXd mu(s_.C.rows());
+  s_.saddle.TakeMultipliers(s_.C, s_.d, &mu);
   EXPECT_LT((s_.A * x_ + s_.C.transpose() * mu - s_.b).norm(), kRounding * s_.b.norm());
   EXPECT_LT((s_.C * x_ - s_.d).norm(), kRounding * s_.d.norm());
 }
 
 TEST_P(EverySize, MultipliersAreTheSmallest) {
-  ASSERT_TRUE(s_.saddle.Factor(s_.A, s_.C));
+  s_.saddle.SetConstraints(s_.C);
+  ASSERT_TRUE(s_.saddle.Factor(s_.A));
   s_.saddle.Solve(s_.C, s_.b, s_.d, &x_);
+  VectorXd mu(s_.C.rows());
+  s_.saddle.TakeMultipliers(s_.C, s_.d, &mu);
   const VectorXd smallest =
       s_.C.transpose().completeOrthogonalDecomposition().solve(s_.b - s_.A * x_);
-  EXPECT_LT((s_.saddle.mu() - smallest).norm(), kRounding * smallest.norm());
+  EXPECT_LT((mu - smallest).norm(), kRounding * smallest.norm());
 }
 
 TEST_P(EverySize, ApproachMakesUpForWhatTheConstraintsAsk) {
-  ASSERT_TRUE(s_.saddle.Factor(s_.A, s_.C));
+  s_.saddle.SetConstraints(s_.C);
+  ASSERT_TRUE(s_.saddle.Factor(s_.A));
   s_.saddle.Approach(s_.C, s_.d, &x_);
   constexpr double kOneSolve = 1e-3;  // A over w C'C where C moves least
   EXPECT_LT((s_.C * x_ - s_.d).norm(), kOneSolve * s_.d.norm());
@@ -68,7 +74,7 @@ TEST(SaddleSystem, WithoutEquationsIsThatOfA) {
   const MatrixXd A = (MatrixXd(2, 2) << 4, 1, 1, 3).finished(), none(0, 2);
   const VectorXd b = Eigen::Vector2d(1, 2);
   VectorXd x(2);
-  ASSERT_TRUE(saddle.Factor(A, none));
+  ASSERT_TRUE(saddle.Factor(A));
   saddle.Solve(none, b, VectorXd(0), &x);
   EXPECT_LT((A * x - b).norm(), kRounding);
 }
@@ -77,7 +83,8 @@ TEST(SaddleSystem, AFreedomThatNothingHoldsIsRefused) {
   SaddleSystem saddle(2, 4);
   MatrixXd A = MatrixXd::Zero(2, 2), C = MatrixXd::Zero(4, 2);
   A(0, 0) = C(0, 0) = 1;
-  EXPECT_FALSE(saddle.Factor(A, C));
+  saddle.SetConstraints(C);
+  EXPECT_FALSE(saddle.Factor(A));
 }
 
 }  // namespace
