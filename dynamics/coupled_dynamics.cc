@@ -65,7 +65,7 @@ CoupledDynamics::CoupledDynamics(const KinematicTree& tree, const GraspFrame& gr
       system_(tree.nv, static_cast<int>(pose_.C().rows())),
       M_(MatrixXd::Zero(tree.nv, tree.nv)),
       A_(M_),
-      coupling_A_(M_),
+      held_A_(M_),
       limited_A_(M_),
       rootKJ_(MatrixXd::Zero(PaddedSize(6), tree.nv)),
       q_(q),
@@ -76,8 +76,10 @@ CoupledDynamics::CoupledDynamics(const KinematicTree& tree, const GraspFrame& gr
       momenta_(v_),
       bias_(v_),
       right_(v_),
+      held_right_(v_),
       limited_right_(v_),
       x_(v_),
+      rest_(v_),
       mu_(pose_.e2()),
       d_(mu_),
       opening_(mu_),
@@ -92,7 +94,7 @@ CoupledDynamics::CoupledDynamics(const KinematicTree& tree, const GraspFrame& gr
   BuildSystem();
   AddCoupling();
   const double rows = pose_.C().squaredNorm();
-  if (rows > 0) system_.SetWeight(kLoopWeight * A_.trace() / rows);
+  if (rows > 0) system_.SetWeight(kLoopWeight * held_A_.trace() / rows);
   system_.SetConstraints(pose_.C());
 }
 
@@ -127,12 +129,16 @@ CoupledStatus CoupledDynamics::Step(const Posed& X_WH, const Vector6d& V_WH) noe
   const double before = Energy();
   BiasForces();
   BuildSystem();
-  if (coupled_) AddCoupling();
-  if (!SolveWithLimits()) return CoupledStatus::kFailed;
+  AddCoupling();
+  // Where it slips, a rough velocity tells in which direction.
+  const Solving first = slipping_ ? Solving::kRoughly : Solving::kFully;
+  if (!SolveWithLimits(held_A_, held_right_, first)) return CoupledStatus::kFailed;
   if (Slip()) {
-    BuildSystem();
     pose_.AddForces(w_, &right_);
-    if (!SolveWithLimits()) return CoupledStatus::kFailed;
+    if (!SolveWithLimits(A_, right_, Solving::kFully)) return CoupledStatus::kFailed;
+  } else if (first == Solving::kRoughly) {
+    if (!SolveWithLimits(held_A_, held_right_, Solving::kFully)) return CoupledStatus::kFailed;
+    Slip();
   }
   FindWrenches();
   const CoupledStatus status = Move();
@@ -157,13 +163,19 @@ void CoupledDynamics::BuildSystem() noexcept {
   AddPassive();
 }
 
+/// The same with the coupling.
 void CoupledDynamics::AddCoupling() noexcept {
+  held_right_ = right_;
+  if (!coupled_) {
+    held_A_ = A_;
+    return;
+  }
   const Vector6d gain = coupling_.damping + T_ * coupling_.stiffness;
   rootKJ_.topRows<6>() = gain.cwiseSqrt().asDiagonal() * pose_.J();
-  system_.Gram(rootKJ_, &coupling_A_);
-  A_ += coupling_A_;
+  system_.Gram(rootKJ_, &held_A_);
+  held_A_ += A_;
   pose_.AddForces(coupling_.stiffness.cwiseProduct(e1_) + coupling_.damping.cwiseProduct(V_WH_),
-                  &right_);
+                  &held_right_);
 }
 
 /// The coupling's wrench at the end of the step. True if it is larger than it may be; then w_ is
@@ -182,9 +194,10 @@ bool CoupledDynamics::Slip() noexcept {
 }
 
 /// Velocities with the joints' limits; those that held last are tried first.
-bool CoupledDynamics::SolveWithLimits() noexcept {
+bool CoupledDynamics::SolveWithLimits(const MatrixXd& A, const VectorXd& right,
+                                      Solving how) noexcept {
   for (int i = 0; i < kContactChanges; ++i) {
-    if (!SolveVelocity()) return false;
+    if (!SolveVelocity(A, right, how)) return false;
     if (!ChangeContacts()) break;
   }
   return true;
@@ -200,17 +213,22 @@ void CoupledDynamics::AddPassive() noexcept {
 }
 
 /// (A + limits) v+ + C' mu = right, C v+ = d.
-bool CoupledDynamics::SolveVelocity() noexcept {
-  limited_A_ = A_;
-  limited_right_ = right_;
+bool CoupledDynamics::SolveVelocity(const MatrixXd& A, const VectorXd& right,
+                                    Solving how) noexcept {
+  limited_A_ = A;
+  limited_right_ = right;
   for (const auto& [q, v, passive, lower, upper, contact] : freedoms_) {
     if (contact == 0) continue;
-    const double hold = kHardLimit * A_(v, v);
+    const double hold = kHardLimit * A(v, v);
     limited_A_(v, v) += hold;
     limited_right_[v] += hold * ((contact > 0 ? upper : lower) - q_[q]) / T_;
   }
   if (!system_.Factor(limited_A_)) return false;
-  system_.Solve(pose_.C(), limited_right_, d_, &next_v_);
+  if (how == Solving::kRoughly) {
+    system_.Approach(pose_.C(), limited_right_, d_, &next_v_);
+  } else {
+    system_.Solve(limited_A_, pose_.C(), limited_right_, d_, &next_v_);
+  }
   return next_v_.allFinite();
 }
 
@@ -272,7 +290,7 @@ CoupledStatus CoupledDynamics::Move() noexcept {
 /// along with the step, towards the errors that curvature will have left: e2 + T^2/2 C' v.
 bool CoupledDynamics::Close() noexcept {
   opening_ = pose_.e2() - (0.5 * T_) * d_;
-  system_.Approach(pose_.C(), opening_, &x_);
+  system_.Approach(pose_.C(), rest_, opening_, &x_);
   x_ += T_ * next_v_;
   next_q_ = q_;
   for (int i = 0;; ++i) {
@@ -280,7 +298,7 @@ bool CoupledDynamics::Close() noexcept {
     pose_.SetLoops(next_q_);
     closure_ = pose_.e2().lpNorm<Eigen::Infinity>();
     if (i == kClosingSteps || closure_ <= kClosed || !std::isfinite(closure_)) break;
-    system_.Approach(pose_.C(), pose_.e2(), &x_);
+    system_.Approach(pose_.C(), rest_, pose_.e2(), &x_);
   }
   return closure_ <= kStillClosed;
 }

@@ -86,13 +86,15 @@ class CoupledDynamics {
     int contact = 0;  // -1 at the lower limit, 1 at the upper
   };
 
+  enum class Solving { kFully, kRoughly };
+
   void ListFreedoms();
   void BiasForces() noexcept;
   void BuildSystem() noexcept;
   void AddCoupling() noexcept;
   void AddPassive() noexcept;
-  bool SolveWithLimits() noexcept;
-  bool SolveVelocity() noexcept;
+  bool SolveWithLimits(const MatrixXd& A, const VectorXd& right, Solving how) noexcept;
+  bool SolveVelocity(const MatrixXd& A, const VectorXd& right, Solving how) noexcept;
   bool Slip() noexcept;
   bool ChangeContacts() noexcept;
   void FindWrenches() noexcept;
@@ -108,9 +110,9 @@ class CoupledDynamics {
   double T_;
   HeldPose pose_;
   SaddleSystem system_;
-  MatrixXd M_, A_, coupling_A_, limited_A_, rootKJ_;
-  VectorXd q_, v_, next_q_, next_v_, vdot_, momenta_, bias_, right_, limited_right_, x_, mu_, d_,
-      opening_;
+  MatrixXd M_, A_, held_A_, limited_A_, rootKJ_;
+  VectorXd q_, v_, next_q_, next_v_, vdot_, momenta_, bias_, right_, held_right_, limited_right_,
+      x_, rest_, mu_, d_, opening_;
   std::vector<Wrenchd> joints_;
   std::vector<Freedom> freedoms_;
   Posed X_WH_;

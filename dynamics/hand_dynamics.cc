@@ -87,7 +87,7 @@ bool HandDynamics::Evaluate(const Vector6d& V_WG, const Vector6d& A_WG, double i
   pose_.SetAccelerations(vdot_);
   pose_.TakeForces(&tau_);
   PassiveForces();
-  system_.Solve(pose_.C(), tau_, none_, &x_);
+  system_.Solve(A_, pose_.C(), tau_, none_, &x_);
   w_d_ = K_.cwiseProduct(pose_.Twist(x_));
   system_.TakeMultipliers(pose_.C(), none_, &mu_);
   pose_.LoadJoints(w_d_, mu_, &joints_);
@@ -111,7 +111,7 @@ bool HandDynamics::Factor() noexcept {
 void HandDynamics::SolveMotion(const Vector6d& b, const VectorXd& d, VectorXd* x) noexcept {
   right_.setZero();
   pose_.AddForces(K_.cwiseProduct(b), &right_);
-  system_.Solve(pose_.C(), right_, d, x);
+  system_.Solve(A_, pose_.C(), right_, d, x);
 }
 
 /// Takes from tau_ what springs, dampers and dry friction supply.

@@ -50,9 +50,10 @@ void CompositeMassMatrix(const KinematicTree& tree, const ScrewWorkspace& ws,
                          ScrewInertias* inertias, MatrixXd* M) noexcept {
   std::fill_n(M->data(), M->size(), 0.0);
   std::copy(inertias->bodies.begin(), inertias->bodies.end(), inertias->composite.begin());
+  ScrewInertia carried;  // in registers, as in HandOn
   for (int i = static_cast<int>(tree.nodes.size()); i-- > 0;) {
     const TreeNode& node = tree.nodes[i];
-    const ScrewInertia& carried = inertias->composite[i + 1];
+    carried += inertias->composite[i + 1];
     for (int v = node.v; v < node.v + VelocitiesOf(node.motion); ++v) {
       const Screw momentum = carried * ws.S[v];
       for (int j = i; j >= 0; j = tree.nodes[j].parent) {
@@ -62,7 +63,9 @@ void CompositeMassMatrix(const KinematicTree& tree, const ScrewWorkspace& ws,
         }
       }
     }
+    if (node.parent == i - 1) continue;
     inertias->composite[node.parent + 1] += carried;
+    carried = {};
   }
 }
 

@@ -9,12 +9,12 @@ namespace vmech {
 /// The algorithms of newton_euler.h for one pose in screws about Wo, for the tick; joints left
 /// open. What a pass finds stays for the next: inertias hold as long as the pose.
 
-/// Inertia of every node about Wo, as one body with all that it carries in `composite`.
+/// Inertia of every node about Wo. `composite` is CompositeMassMatrix's own.
 struct ScrewInertias {
   explicit ScrewInertias(const KinematicTree& tree)
       : bodies(tree.nodes.size() + 1), composite(bodies) {}
 
-  std::vector<ScrewInertia> bodies, composite;  ///< node i at i + 1; all there is in composite[0]
+  std::vector<ScrewInertia> bodies, composite;  ///< node i at i + 1
 };
 
 /// Weight is a ground that falls upwards: the ground's A, once.
@@ -28,7 +28,7 @@ void BodyInertias(const KinematicTree& tree, const ScrewWorkspace& ws,
 ///
 ///   M_ij = S_j' I_i^c S_i,   j on the way from i to the ground.
 ///
-/// Needs S and BodyInertias; writes `composite`. O(n depth).
+/// Needs S and BodyInertias. O(n depth).
 void CompositeMassMatrix(const KinematicTree& tree, const ScrewWorkspace& ws,
                          ScrewInertias* inertias, MatrixXd* M) noexcept;
 

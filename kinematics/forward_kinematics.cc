@@ -8,13 +8,12 @@
 namespace vmech {
 namespace {
 
-/// Sine and cosine of every coordinate; those of lengths mean nothing.
 void TakeSines(const KinematicTree& tree, const Packet* q, TreeWorkspace<Packet>* ws) {
-  for (int k = 0; k < tree.nq; ++k) SinCos(q[k], &ws->sine[k], &ws->cosine[k]);
+  for (int k : tree.turning) SinCos(q[k], &ws->sine[k], &ws->cosine[k]);
 }
 
 void TakeSines(const KinematicTree& tree, const double* q, TreeWorkspace<double>* ws) {
-  Sines(q, tree.nq, ws->sine.data(), ws->cosine.data());
+  Sines(tree, q, ws->sine.data(), ws->cosine.data());
 }
 
 /// R Rz(angle).
@@ -69,19 +68,17 @@ RelativeMotion<T> MotionAcross(const TreeNode& node, const Pose<T>& X_WB, const 
 
 }  // namespace
 
-void Sines(const double* angles, int count, double* sine, double* cosine) noexcept {
+void Sines(const KinematicTree& tree, const double* q, double* sine, double* cosine) noexcept {
   // Number by number: loading four at once would wait for the last of them to be written.
+  const int* turning = tree.turning.data();
+  const int count = static_cast<int>(tree.turning.size());
   for (int k = 0; k < count; k += Packet::kLanes) {
     Packet s, c;
-    SinCos(Packet::Of([&](int lane) { return angles[std::min(k + lane, count - 1)]; }), &s, &c);
-    if (k + Packet::kLanes <= count) {
-      s.Store(sine + k);
-      c.Store(cosine + k);
-      continue;
-    }
-    for (int lane = 0; k + lane < count; ++lane) {
-      sine[k + lane] = s[lane];
-      cosine[k + lane] = c[lane];
+    const auto angle = [&](int lane) { return q[turning[std::min(k + lane, count - 1)]]; };
+    SinCos(Packet::Of(angle), &s, &c);
+    for (int lane = 0; lane < Packet::kLanes && k + lane < count; ++lane) {
+      sine[turning[k + lane]] = s[lane];
+      cosine[turning[k + lane]] = c[lane];
     }
   }
 }
@@ -161,6 +158,7 @@ void ForwardAccelerations(const KinematicTree& tree, const T* v, const T* vdot,
 
 template <typename T>
 void MoveCoordinates(const KinematicTree& tree, const T* dv, T* q) {
+  using std::abs;
   using std::sqrt;
   for (const TreeNode& node : tree.nodes) {
     if (node.motion == NodeMotion::kFixed) continue;
@@ -187,7 +185,10 @@ void MoveCoordinates(const KinematicTree& tree, const T* dv, T* q) {
     const Vector3<T> xyz(wxyz[1], wxyz[2], wxyz[3]);
     const T w_next = w * cosine - xyz.dot(e);
     const Vector3<T> xyz_next = w * e + cosine * xyz + xyz.cross(e);
-    const T per_length = 1.0 / sqrt(w_next * w_next + xyz_next.squaredNorm());
+    const T length2 = w_next * w_next + xyz_next.squaredNorm();
+    const T excess = length2 - 1.0;
+    const bool nearly = AllLanes(abs(excess) <= T(1e-8));
+    const T per_length = nearly ? 1.0 - 0.5 * excess : 1.0 / sqrt(length2);
     wxyz[0] = per_length * w_next;
     for (int k = 0; k < 3; ++k) wxyz[1 + k] = per_length * xyz_next[k];
   }

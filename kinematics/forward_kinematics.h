@@ -8,8 +8,8 @@ namespace vmech {
 template <typename T>
 void ForwardKinematics(const KinematicTree& tree, const T* q, TreeWorkspace<T>* ws);
 
-/// Sine and cosine of `count` numbers, four at a time.
-void Sines(const double* angles, int count, double* sine, double* cosine) noexcept;
+/// Sine and cosine of the angles among q [nq], four at a time; nothing else is written.
+void Sines(const KinematicTree& tree, const double* q, double* sine, double* cosine) noexcept;
 
 /// The rotation of a unit quaternion (w, x, y, z).
 template <typename T>

@@ -141,6 +141,8 @@ class Builder {
     const int velocities = VelocitiesOf(node->motion);
     if (velocities == 0) return;
     node->q = tree_.nq;
+    const bool turns = node->motion == NodeMotion::kRevolute || node->motion == NodeMotion::kScrew;
+    if (turns) tree_.turning.push_back(node->q);
     node->v = tree_.nv;
     tree_.nv += velocities;
     tree_.nq += node->motion == NodeMotion::kSpherical ? 4 : 1;

@@ -85,8 +85,9 @@ struct KinematicTree {
   std::vector<Loop> loops;
   int nq = 0;
   int nv = 0;
-  int rows = 0;       ///< loop equations in all
-  double length = 1;  ///< characteristic length [m]
+  int rows = 0;              ///< loop equations in all
+  std::vector<int> turning;  ///< the coordinates that are angles: no lengths, no quaternions
+  double length = 1;         ///< characteristic length [m]
 
   /// Node that carries a link; -1 for the ground.
   int NodeOfLink(int link) const { return node_of_link[link]; }

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <cmath>
-#include <cstring>
 
 namespace vmech {
 
@@ -27,9 +26,6 @@ class Packet {
   static Packet Of(const Number& number) {
     return Packet(Lanes{number(0), number(1), number(2), number(3)});
   }
-
-  /// Writes four numbers in a row.
-  void Store(double* numbers) const { std::memcpy(numbers, &lanes_, sizeof(Lanes)); }
 
   double operator[](int lane) const { return lanes_[lane]; }
 

@@ -84,8 +84,8 @@ Matrix3d RotationBy(const Vector3d& r) noexcept {
   const double x2 = r.squaredNorm();
   double s = 0, c = 0;  // sin x/x and (1 - cos x)/x^2
   if (x2 < 0.01) {
-    s = 1 - x2 / 6 * (1 - x2 / 20 * (1 - x2 / 42 * (1 - x2 / 72)));
-    c = 0.5 - x2 / 24 * (1 - x2 / 30 * (1 - x2 / 56 * (1 - x2 / 90)));
+    s = 1 - x2 * (1.0 / 6 - x2 * (1.0 / 120 - x2 * (1.0 / 5040 - x2 * (1.0 / 362880))));
+    c = 0.5 - x2 * (1.0 / 24 - x2 * (1.0 / 720 - x2 * (1.0 / 40320 - x2 * (1.0 / 3628800))));
   } else {
     const double x = std::sqrt(x2), half = std::sin(x / 2);
     s = std::sin(x) / x;

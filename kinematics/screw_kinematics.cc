@@ -81,7 +81,7 @@ ScrewWorkspace::ScrewWorkspace(const KinematicTree& tree)
       cosine(tree.nq) {}
 
 void ForwardKinematics(const KinematicTree& tree, const double* q, ScrewWorkspace* ws) noexcept {
-  Sines(q, tree.nq, ws->sine.data(), ws->cosine.data());
+  Sines(tree, q, ws->sine.data(), ws->cosine.data());
   Axes X;
   for (int i = 0; i < static_cast<int>(tree.nodes.size()); ++i) {
     const TreeNode& node = tree.nodes[i];

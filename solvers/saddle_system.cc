@@ -19,9 +19,29 @@ void Gram(double w, const double* B, int rows, int size, double* G) noexcept {
   const int n = kSize > 0 ? kSize : size;
   for (int j = 0; j < n; ++j) {
     const double* B_j = B + j * rows;
-    for (int i = j; i < n; ++i) {
+    const double square = G[j * n + j] = w * DotOfFours(B_j, B_j, rows);
+    if (kSize == 0 && square == 0) {
+      for (int i = j + 1; i < n; ++i) G[j * n + i] = G[i * n + j] = 0;
+      continue;
+    }
+    for (int i = j + 1; i < n; ++i) {
       G[j * n + i] = G[i * n + j] = w * DotOfFours(B + i * rows, B_j, rows);
     }
+  }
+}
+
+/// y += A x, for sizes not known here: four rows at a time, which stay in registers.
+void AddProduct(const double* A, const double* x, int n, double* y) noexcept {
+  int i = 0;
+  for (; i + 4 <= n; i += 4) {
+    Four sum = LoadFour(y + i);
+    for (int j = 0; j < n; ++j) sum += x[j] * LoadFour(A + j * n + i);
+    StoreFour(sum, y + i);
+  }
+  for (; i < n; ++i) {
+    double sum = y[i];
+    for (int j = 0; j < n; ++j) sum += A[j * n + i] * x[j];
+    y[i] = sum;
   }
 }
 
@@ -56,7 +76,7 @@ void Iterate(const double* L, const double* A, const double* b, const double* ri
     } else {
       std::copy_n(y, n, x);
       for (int i = 0; i < n; ++i) y[i] = right[i] - b[i];
-      for (int j = 0; j < n; ++j) AddScaled(x[j], A + j * n, n, y);
+      AddProduct(A, x, n, y);
     }
     SolveLdlt<kSize>(L, n, y);
     for (int i = 0; i < n; ++i) total[i] += y[i];
@@ -89,7 +109,6 @@ SaddleSystem::SaddleSystem(int unknowns, int equations)
     : kernels_(Kernels::ForSize(unknowns)),
       equations_(equations),
       G_(MatrixXd::Zero(unknowns, unknowns)),
-      A_(G_),
       L_(G_),
       right_(VectorXd::Zero(unknowns)),
       scratch_(right_),
@@ -103,23 +122,16 @@ void SaddleSystem::SetConstraints(const MatrixXd& C) noexcept {
 
 bool SaddleSystem::Factor(const MatrixXd& A) noexcept {
   const int n = size();
-  for (int i = 0; i < n * n; ++i) {
-    A_.data()[i] = A.data()[i];
-    L_.data()[i] = A.data()[i] + G_.data()[i];
-  }
+  for (int i = 0; i < n * n; ++i) L_.data()[i] = A.data()[i] + G_.data()[i];
   return kernels_.factor(n, L_.data());
 }
 
-void SaddleSystem::Solve(const MatrixXd& C, const VectorXd& b, const VectorXd& d,
+void SaddleSystem::Solve(const MatrixXd& A, const MatrixXd& C, const VectorXd& b, const VectorXd& d,
                          VectorXd* x) noexcept {
   const int n = size();
-  if (equations_ == 0) {
-    std::copy_n(b.data(), n, x->data());
-    kernels_.solve(L_.data(), n, x->data());
-    return;
-  }
+  if (equations_ == 0) return Approach(C, b, d, x);
   kernels_.add_transposed(weight_, C.data(), equations_, d.data(), b.data(), n, right_.data());
-  kernels_.iterate(L_.data(), A_.data(), b.data(), right_.data(), n, scratch_.data(), total_.data(),
+  kernels_.iterate(L_.data(), A.data(), b.data(), right_.data(), n, scratch_.data(), total_.data(),
                    x->data());
 }
 
@@ -127,15 +139,18 @@ void SaddleSystem::TakeMultipliers(const MatrixXd& C, const VectorXd& d,
                                    VectorXd* mu) const noexcept {
   for (int i = 0; i < equations_; ++i) (*mu)[i] = -kSolves * weight_ * d[i];
   for (int j = 0; j < size(); ++j) {
-    AddScaled(weight_ * total_[j], C.data() + j * equations_, equations_, mu->data());
+    AddScaled(weight_ * total_[j], C.data() + j * equations_, 0, equations_, mu->data());
   }
 }
 
-void SaddleSystem::Approach(const MatrixXd& C, const VectorXd& d, VectorXd* x) noexcept {
-  x->setZero();
-  if (equations_ == 0) return;
-  kernels_.add_transposed(weight_, C.data(), equations_, d.data(), x->data(), size(), x->data());
-  kernels_.solve(L_.data(), size(), x->data());
+void SaddleSystem::Approach(const MatrixXd& C, const VectorXd& b, const VectorXd& d,
+                            VectorXd* x) noexcept {
+  const int n = size();
+  std::copy_n(b.data(), n, x->data());
+  if (equations_ > 0) {
+    kernels_.add_transposed(weight_, C.data(), equations_, d.data(), b.data(), n, x->data());
+  }
+  kernels_.solve(L_.data(), n, x->data());
 }
 
 void SaddleSystem::Gram(const MatrixXd& B, MatrixXd* G) const noexcept {

@@ -27,17 +27,19 @@ class SaddleSystem {
   /// w; equations are taken to be scaled alike.
   void SetWeight(double weight) noexcept { weight_ = weight; }
 
-  /// Takes C [equations, unknowns]. It is not copied: the same is to be given to what follows.
+  /// Takes C [equations, unknowns]. Neither it nor A is copied: the same are to be given to what
+  /// follows.
   void SetConstraints(const MatrixXd& C) noexcept;
-  /// A [unknowns, unknowns], whose lower triangle counts. False if the sum is not positive
-  /// definite.
+  /// A [unknowns, unknowns], symmetric, both triangles. False if the sum is not positive definite.
   [[nodiscard]] bool Factor(const MatrixXd& A) noexcept;
   /// Writes x.
-  void Solve(const MatrixXd& C, const VectorXd& b, const VectorXd& d, VectorXd* x) noexcept;
+  void Solve(const MatrixXd& A, const MatrixXd& C, const VectorXd& b, const VectorXd& d,
+             VectorXd* x) noexcept;
   /// The multipliers [equations] of the x found last, for the same d.
   void TakeMultipliers(const MatrixXd& C, const VectorXd& d, VectorXd* mu) const noexcept;
-  /// The smallest x, in the metric of A, that comes near C x = d: one solve with b = 0.
-  void Approach(const MatrixXd& C, const VectorXd& d, VectorXd* x) noexcept;
+  /// Writes what the first of the solves gives: x as near to C x = d as A over w C'C is to zero,
+  /// and for b = 0 the smallest such x in the metric of A.
+  void Approach(const MatrixXd& C, const VectorXd& b, const VectorXd& d, VectorXd* x) noexcept;
 
   /// G = B'B, B [multiple of four, unknowns]: for an A that is made so.
   void Gram(const MatrixXd& B, MatrixXd* G) const noexcept;
@@ -49,7 +51,7 @@ class SaddleSystem {
   const Kernels& kernels_;
   double weight_ = 1;
   int equations_;
-  MatrixXd G_, A_, L_;                // w C'C, A and the factors
+  MatrixXd G_, L_;                    // w C'C and the factors
   VectorXd right_, scratch_, total_;  // total_: sum of the solves
 };
 

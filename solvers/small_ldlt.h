@@ -36,11 +36,13 @@ inline double Dot(const double* a, const double* b, int m) noexcept {
   return m == 0 ? rest : DotOfFours(a, b, m) + rest;
 }
 
-/// y += s x.
-inline void AddScaled(double s, const double* x, int m, double* y) noexcept {
-  int k = 0;
-  for (; k + 4 <= m; k += 4) StoreFour(LoadFour(y + k) + s * LoadFour(x + k), y + k);
-  for (; k < m; ++k) y[k] += s * x[k];
+/// y += s x for the entries from `from` to `to`, four at a time from multiples of four on: what one
+/// call has stored, another loads as it is, without waiting for it to reach memory.
+inline void AddScaled(double s, const double* x, int from, int to, double* y) noexcept {
+  int k = from;
+  for (; k % 4 != 0 && k < to; ++k) y[k] += s * x[k];
+  for (; k + 4 <= to; k += 4) StoreFour(LoadFour(y + k) + s * LoadFour(x + k), y + k);
+  for (; k < to; ++k) y[k] += s * x[k];
 }
 
 /// body(0), body(1), .. body(kCount - 1), each with a constant for its argument: what they work on
@@ -53,8 +55,8 @@ inline void Unrolled(const Body& body) noexcept {
   (std::make_integer_sequence<int, kCount>());
 }
 
-/// The lower triangle of a symmetric matrix becomes unit L, with 1/D on the diagonal. False if it
-/// is not positive definite.
+/// The lower triangle of a symmetric matrix becomes unit L, with 1/D on the diagonal and, where
+/// the size is not known here, L' above. False if it is not positive definite.
 template <int kSize>
 [[nodiscard]] bool FactorLdlt(int size, double* L) noexcept {
   if constexpr (kSize > 0) {
@@ -83,10 +85,10 @@ template <int kSize>
       const double inverse = 1 / L_j[j];
       L_j[j] = inverse;
       for (int k = j + 1; k < n; ++k) {
-        const double scaled = L_j[k] * inverse;
-        if (scaled != 0) AddScaled(-scaled, L_j + k, n - k, L + k * n + k);
+        const double scaled = L[k * n + j] = L_j[k] * inverse;
+        if (scaled != 0) AddScaled(-scaled, L_j, k, n, L + k * n);
       }
-      for (int i = j + 1; i < n; ++i) L_j[i] *= inverse;
+      for (int i = j + 1; i < n; ++i) L_j[i] = L[i * n + j];
     }
     return true;
   }
@@ -111,10 +113,9 @@ void SolveLdlt(const double* L, int size, double* x) noexcept {
     Unrolled<n>([&](auto i) { x[i] = y[i]; });
   } else {
     const int n = size;
-    for (int j = 0; j < n; ++j) AddScaled(-x[j], L + j * n + j + 1, n - j - 1, x + j + 1);
-    for (int j = n - 1; j >= 0; --j) {
-      x[j] = x[j] * L[j * n + j] - Dot(L + j * n + j + 1, x + j + 1, n - j - 1);
-    }
+    for (int j = 0; j < n; ++j) AddScaled(-x[j], L + j * n, j + 1, n, x);
+    for (int j = 0; j < n; ++j) x[j] *= L[j * n + j];
+    for (int j = n - 1; j > 0; --j) AddScaled(-x[j], L + j * n, 0, j, x);
   }
 }
 

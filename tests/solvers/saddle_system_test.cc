@@ -41,7 +41,7 @@ class EverySize : public testing::TestWithParam<int> {
 TEST_P(EverySize, SolutionFulfilsBothEquationsWithRedundantRows) {
   s_.saddle.SetConstraints(s_.C);
   ASSERT_TRUE(s_.saddle.Factor(s_.A));
-  s_.saddle.Solve(s_.C, s_.b, s_.d, &x_);
+  s_.saddle.Solve(s_.A, s_.C, s_.b, s_.d, &x_);
   VectorXd mu(s_.C.rows());
   s_.saddle.TakeMultipliers(s_.C, s_.d, &mu);
   EXPECT_LT((s_.A * x_ + s_.C.transpose() * mu - s_.b).norm(), kRounding * s_.b.norm());
@@ -51,7 +51,7 @@ TEST_P(EverySize, SolutionFulfilsBothEquationsWithRedundantRows) {
 TEST_P(EverySize, MultipliersAreTheSmallest) {
   s_.saddle.SetConstraints(s_.C);
   ASSERT_TRUE(s_.saddle.Factor(s_.A));
-  s_.saddle.Solve(s_.C, s_.b, s_.d, &x_);
+  s_.saddle.Solve(s_.A, s_.C, s_.b, s_.d, &x_);
   VectorXd mu(s_.C.rows());
   s_.saddle.TakeMultipliers(s_.C, s_.d, &mu);
   const VectorXd smallest =
@@ -62,7 +62,7 @@ TEST_P(EverySize, MultipliersAreTheSmallest) {
 TEST_P(EverySize, ApproachMakesUpForWhatTheConstraintsAsk) {
   s_.saddle.SetConstraints(s_.C);
   ASSERT_TRUE(s_.saddle.Factor(s_.A));
-  s_.saddle.Approach(s_.C, s_.d, &x_);
+  s_.saddle.Approach(s_.C, VectorXd::Zero(GetParam()), s_.d, &x_);
   constexpr double kOneSolve = 1e-3;  // A over w C'C where C moves least
   EXPECT_LT((s_.C * x_ - s_.d).norm(), kOneSolve * s_.d.norm());
 }
@@ -75,7 +75,7 @@ TEST(SaddleSystem, WithoutEquationsIsThatOfA) {
   const VectorXd b = Eigen::Vector2d(1, 2);
   VectorXd x(2);
   ASSERT_TRUE(saddle.Factor(A));
-  saddle.Solve(none, b, VectorXd(0), &x);
+  saddle.Solve(A, none, b, VectorXd(0), &x);
   EXPECT_LT((A * x - b).norm(), kRounding);
 }
 
