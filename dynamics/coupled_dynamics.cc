@@ -215,19 +215,24 @@ void CoupledDynamics::AddPassive() noexcept {
 /// (A + limits) v+ + C' mu = right, C v+ = d.
 bool CoupledDynamics::SolveVelocity(const MatrixXd& A, const VectorXd& right,
                                     Solving how) noexcept {
-  limited_A_ = A;
-  limited_right_ = right;
+  const bool limited = at_limit();
+  if (limited) {
+    limited_A_ = A;
+    limited_right_ = right;
+  }
   for (const auto& [q, v, passive, lower, upper, contact] : freedoms_) {
     if (contact == 0) continue;
     const double hold = kHardLimit * A(v, v);
     limited_A_(v, v) += hold;
     limited_right_[v] += hold * ((contact > 0 ? upper : lower) - q_[q]) / T_;
   }
-  if (!system_.Factor(limited_A_)) return false;
+  const MatrixXd& A_now = limited ? limited_A_ : A;
+  const VectorXd& right_now = limited ? limited_right_ : right;
+  if (!system_.Factor(A_now)) return false;
   if (how == Solving::kRoughly) {
-    system_.Approach(pose_.C(), limited_right_, d_, &next_v_);
+    system_.Approach(pose_.C(), right_now, d_, &next_v_);
   } else {
-    system_.Solve(limited_A_, pose_.C(), limited_right_, d_, &next_v_);
+    system_.Solve(A_now, pose_.C(), right_now, d_, &next_v_);
   }
   return next_v_.allFinite();
 }
@@ -261,7 +266,6 @@ bool CoupledDynamics::at_limit() const noexcept {
 void CoupledDynamics::FindWrenches() noexcept {
   vdot_ = (next_v_ - v_) / T_;
   pose_.SetAccelerations(vdot_);
-  pose_.TakeForces(&x_);
   system_.TakeMultipliers(pose_.C(), d_, &mu_);
   mu_ = -mu_;
   pose_.LoadJoints(w_, mu_, &joints_);

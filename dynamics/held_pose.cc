@@ -42,9 +42,8 @@ void HeldPose::SetLoops(const VectorXd& q) noexcept {
   LoopErrors(tree_, &ws_);
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
     const Loop& loop = tree_.loops[l];
-    for (int i = loop.row, k = 0; k < loop.rows; ++i, ++k) {
-      e2_[i] = row_scale_[i] * ws_.loops[l].state.e2[k];
-    }
+    const Vector6d& e2 = ws_.loops[l].state.e2;
+    for (int k = 0; k < loop.rows; ++k) e2_[loop.row + k] = row_scale_[loop.row + k] * e2[k];
   }
 }
 
@@ -118,6 +117,7 @@ void HeldPose::TakeForces(VectorXd* tau) noexcept {
 
 void HeldPose::LoadJoints(const Vector6d& w_hand, const VectorXd& mu,
                           std::vector<Wrenchd>* joints) noexcept {
+  NewtonEuler(tree_, inertias_, &ws_);
   const Screw hand = WrenchAt(FourOf(X_WG_.p), FourOf(w_hand.head<3>()), FourOf(w_hand.tail<3>()));
   for (int n = grasp_.node; n >= 0; n = tree_.nodes[n].parent) ws_.at(n).F -= hand;
   for (size_t l = 0; l < tree_.loops.size(); ++l) {

@@ -38,23 +38,22 @@ class HeldPose {
 
   /// M [nv, nv].
   void TakeMassMatrix(MatrixXd* M) noexcept;
+
   /// Takes v [nv].
   void SetVelocities(const VectorXd& v) noexcept;
+  double KineticEnergy() const noexcept;  ///< at these [J]
+  /// Takes v' = 0, and finds what comes of v alone, as all that follows needs it; d = -C' v, scaled
+  /// and padded like C.
+  void TakeLoopBias(VectorXd* d) noexcept;
+  /// The acceleration of Go for v' = 0.
+  Vector6d GraspBias() const noexcept;
   /// Takes v' [nv].
   void SetAccelerations(const VectorXd& vdot) noexcept;
-
-  // At the velocities taken last.
-  double KineticEnergy() const noexcept;  ///< [J]
-  /// Takes v' = 0 and returns what is left: d = -C' v, scaled and padded like C.
-  void TakeLoopBias(VectorXd* d) noexcept;
-  /// The acceleration of Go there.
-  Vector6d GraspBias() const noexcept;
-
-  /// M v' + h [nv], at the accelerations taken last.
+  /// M v' + h [nv].
   void TakeForces(VectorXd* tau) noexcept;
   /// Joint by joint of the mechanism, what the first link exerts on the second about the second
-  /// anchor's origin, axes of the first anchor, at the forces taken last less the hand's wrench
-  /// at Go and the multipliers of tau = J' w + C' mu. Once after TakeForces.
+  /// anchor's origin, axes of the first anchor, while a hand exerts w at Go and the loops the
+  /// multipliers of tau = J' w + C' mu.
   void LoadJoints(const Vector6d& w_hand, const VectorXd& mu,
                   std::vector<Wrenchd>* joints) noexcept;
 
