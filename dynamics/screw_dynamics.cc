@@ -121,8 +121,9 @@ void GeneralisedForces(const KinematicTree& tree, const ScrewWorkspace& ws, doub
   const ScrewWorkspace::Node* state = ws.nodes.data();
   for (const TreeNode& node : tree.nodes) {
     ++state;
-    for (int v = node.v; v < node.v + VelocitiesOf(node.motion); ++v)
+    for (int v = node.v; v < node.v + VelocitiesOf(node.motion); ++v) {
       tau[v] = Power(state->F, ws.S[v]);
+    }
   }
 }
 

@@ -92,7 +92,8 @@ double ArmModel::PotentialEnergy() noexcept {
 const VectorXd& ArmModel::Accelerations(const VectorXd& v, const VectorXd& torque,
                                         const Wrenchd& F_Ho) noexcept {
   BiasForces(v, F_Ho);
-  factor_.compute(MassMatrix());
+  CompositeMassMatrix(arm_->tree, ws_, &inertias_, &M_);  // inertias are those of BiasForces
+  factor_.compute(M_);
   // M v' = tau - h
   acceleration_ = torque - bias_;
   factor_.solveInPlace(acceleration_);

@@ -169,7 +169,9 @@ void MoveCoordinates(const KinematicTree& tree, const T* dv, T* q) {
     const Vector3<T> turn(dv[node.v], dv[node.v + 1], dv[node.v + 2]);
     const T angle2 = turn.squaredNorm();
     T per_angle, cosine;  // sin(angle/2)/angle and cos(angle/2)
-    if (AllLanes(angle2 <= T(0.01))) {
+    // Short cuts of a single pose: what decides for four lanes must not depend on all of them.
+    constexpr bool kSingle = kLanesOf<T> == 1;
+    if (kSingle && AllLanes(angle2 <= T(0.01))) {
       const T x = 0.25 * angle2;
       per_angle = 0.5 - x * (1.0 / 12 - x * (1.0 / 240 - x * (1.0 / 10080 - x * (1.0 / 725760))));
       cosine = 1.0 - x * (1.0 / 2 - x * (1.0 / 24 - x * (1.0 / 720 - x * (1.0 / 40320))));
@@ -187,7 +189,7 @@ void MoveCoordinates(const KinematicTree& tree, const T* dv, T* q) {
     const Vector3<T> xyz_next = w * e + cosine * xyz + xyz.cross(e);
     const T length2 = w_next * w_next + xyz_next.squaredNorm();
     const T excess = length2 - 1.0;
-    const bool nearly = AllLanes(abs(excess) <= T(1e-8));
+    const bool nearly = kSingle && AllLanes(abs(excess) <= T(1e-8));
     const T per_length = nearly ? 1.0 - 0.5 * excess : 1.0 / sqrt(length2);
     wxyz[0] = per_length * w_next;
     for (int k = 0; k < 3; ++k) wxyz[1 + k] = per_length * xyz_next[k];
