@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "support/examples.h"
+#include "vmech/dynamics/held_pose.h"
 #include "vmech/dynamics/newton_euler.h"
 #include "vmech/kinematics/assembly.h"
 #include "vmech/kinematics/forward_kinematics.h"
@@ -48,19 +49,11 @@ class EveryTreeInScrews : public testing::TestWithParam<std::string> {
   }
   /// Far from closed.
   VectorXd SomePose() { return RandomCoordinates(tree_, &random_); }
-  MatrixXd LoopRows() {
-    MatrixXd C = MatrixXd::Zero(tree_.rows, tree_.nv);
-    const VectorXd scale = LoopRowScale(tree_);
-    LoopWrenches(tree_, scale.data(), &ws_);
-    for (size_t l = 0; l < tree_.loops.size(); ++l) {
-      const Loop& loop = tree_.loops[l];
-      for (const LoopColumn& c : loop.columns) {
-        for (int k = 0; k < loop.rows; ++k) {
-          C(loop.row + k, c.v) = c.sign * Power(ws_.loops[l].rows[k], ws_.S[c.v]);
-        }
-      }
-    }
-    return C;
+  /// As the tick has them.
+  MatrixXd LoopRows(const VectorXd& q) {
+    HeldPose pose(tree_, GraspFrame{});
+    pose.Set(q);
+    return pose.C().topRows(tree_.rows);
   }
 
   Random random_{7};
@@ -84,9 +77,10 @@ TEST_P(EveryTreeInScrews, HasTheSamePosesAndLoopErrors) {
 }
 
 TEST_P(EveryTreeInScrews, HasTheSameJacobians) {
-  SetPose(SomePose());
+  const VectorXd q = SomePose();
+  SetPose(q);
   const MatrixXd C = LoopRowScale(tree_).asDiagonal() * DenseLoopJacobian(tree_, reference_);
-  EXPECT_LE((LoopRows() - C).norm(), kIdentity * C.norm());
+  EXPECT_LE((LoopRows(q) - C).norm(), kIdentity * C.norm());
   const Vector3d p_WQ(0.1, -0.2, 0.3);
   for (size_t i = 0; i < tree_.nodes.size(); ++i) {
     const int node = static_cast<int>(i);
@@ -99,11 +93,12 @@ TEST_P(EveryTreeInScrews, HasTheSameJacobians) {
 
 TEST_P(EveryTreeInScrews, HasTheSameLoopBias) {
   SetPose(q_);
-  const MatrixXd C = LoopRows();
+  const MatrixXd C = LoopRows(q_);
   const VectorXd v = tree_.rows > 0 ? VectorXd(FindNullSpace(C, 1e-9).basis.rowwise().sum()) : v_;
   SetMotion(v, nullptr);
   LoopAccelerationBias(tree_, &reference_);
   const VectorXd scale = LoopRowScale(tree_);
+  LoopWrenches(tree_, scale.data(), &ws_);
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
     const Loop& loop = tree_.loops[l];
     VectorXd bias(loop.rows);
@@ -152,6 +147,37 @@ TEST_P(EveryTreeInScrews, HasTheSameMassMatrixAndMomenta) {
 
 INSTANTIATE_TEST_SUITE_P(Examples, EveryTreeInScrews, testing::ValuesIn(ExampleNames()),
                          [](const auto& info) { return TestName(info.param); });
+
+/// Every type of joint where the loop is cut, which the examples do not have all.
+class EveryCutJoint : public testing::TestWithParam<int> {};
+
+TEST_P(EveryCutJoint, HasTheSameRows) {
+  Mechanism linkage = Example("rssr");
+  const int last = static_cast<int>(linkage.joints.size()) - 1;
+  Joint& cut = linkage.joints[last];
+  cut = MakeJoint(cut.name, static_cast<JointType>(GetParam()), cut.first, cut.second);
+  cut.pitch = cut.type == JointType::kScrew ? 0.3 : 0;
+  SpanningTreeOptions options;
+  options.cut = {last};
+  const KinematicTree tree = BuildKinematicTree(linkage, options);
+  ASSERT_EQ(tree.loops.at(0).type, cut.type);
+  Random random(5);
+  const VectorXd q = RandomCoordinates(tree, &random);
+  TreeWorkspace<double> reference(tree);
+  ForwardKinematics(tree, q.data(), &reference);
+  LoopErrors(tree, &reference);
+  LoopJacobian(tree, &reference);
+  HeldPose pose(tree, GraspFrame{});
+  pose.Set(q);
+  const VectorXd scale = LoopRowScale(tree);
+  const MatrixXd C = scale.asDiagonal() * DenseLoopJacobian(tree, reference);
+  const VectorXd e2 = scale.cwiseProduct(StackedLoopErrors(tree, reference));
+  EXPECT_LE((pose.C().topRows(tree.rows) - C).norm(), kIdentity * C.norm());
+  EXPECT_LE((pose.e2().head(tree.rows) - e2).norm(), kIdentity * e2.norm());
+}
+
+INSTANTIATE_TEST_SUITE_P(Types, EveryCutJoint,
+                         testing::Range(0, static_cast<int>(JointType::kWeld) + 1));
 
 }  // namespace
 }  // namespace vmech
