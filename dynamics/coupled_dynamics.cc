@@ -19,7 +19,7 @@ constexpr double kDamping = 1e-14;
 constexpr double kHardLimit = 1e4;
 constexpr int kContactChanges = 3;
 constexpr int kClosingSteps = 5;
-constexpr double kClosed = 1e-11;      // [-] where the closing stops
+constexpr double kClosed = 3e-11;      // [-] where the closing stops
 constexpr double kStillClosed = 1e-9;  // [-] beyond, a step is not taken
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr double kFarthest = 0.1;  // [rad] or [m] that a coordinate moves in a step
@@ -79,10 +79,12 @@ CoupledDynamics::CoupledDynamics(const KinematicTree& tree, const GraspFrame& gr
       held_right_(v_),
       limited_right_(v_),
       x_(v_),
+      aim_(v_),
       rest_(v_),
       mu_(pose_.e2()),
       d_(mu_),
       opening_(mu_),
+      miss_(mu_),
       joints_(tree.mechanism.joints.size()) {
   CheckRange("CoupledDynamics", "step", step, 1e-7, 1);
   RefuseUnrenderedFriction(tree);
@@ -281,6 +283,7 @@ CoupledStatus CoupledDynamics::Move() noexcept {
     pose_.SetJacobians();
   } else {
     v_.setZero();
+    miss_.setZero();
     pose_.Set(q_);
   }
   system_.SetConstraints(pose_.C());
@@ -291,20 +294,33 @@ CoupledStatus CoupledDynamics::Move() noexcept {
 }
 
 /// Where the step leads, q+ = q (+) T v+, and from there chord steps C dq = e2. The first goes
-/// along with the step, towards the errors that curvature will have left: e2 + T^2/2 C' v.
+/// along with the step.
 bool CoupledDynamics::Close() noexcept {
-  opening_ = pose_.e2() - (0.5 * T_) * d_;
-  system_.Approach(pose_.C(), rest_, opening_, &x_);
-  x_ += T_ * next_v_;
+  x_ = T_ * next_v_;
+  if (!tree_.loops.empty()) AimAtClosure();
   next_q_ = q_;
   for (int i = 0;; ++i) {
     MoveCoordinates(tree_, x_.data(), next_q_.data());
     pose_.SetLoops(next_q_);
     closure_ = pose_.e2().lpNorm<Eigen::Infinity>();
+    if (i == 0) miss_ += pose_.e2();
     if (i == kClosingSteps || closure_ <= kClosed || !std::isfinite(closure_)) break;
     system_.Approach(pose_.C(), rest_, pose_.e2(), &x_);
   }
   return closure_ <= kStillClosed;
+}
+
+/// Adds to the step what closes the loops at its end, where it leaves errors of
+///
+///   e2 - T C v+ - T^2/2 C'(v+) v+ = e2 - T d - T^2/2 C'(v+) v+
+///
+/// and, to third order, the same as the last step.
+void CoupledDynamics::AimAtClosure() noexcept {
+  pose_.SetVelocities(next_v_);
+  pose_.TakeLoopBias(&opening_);
+  opening_ = pose_.e2() - T_ * d_ + (0.5 * T_ * T_) * opening_ + miss_;
+  system_.Approach(pose_.C(), rest_, opening_, &aim_);
+  x_ += aim_;
 }
 
 /// Inertia, and the energies without the coupling's.

@@ -100,6 +100,7 @@ class CoupledDynamics {
   void FindWrenches() noexcept;
   CoupledStatus Move() noexcept;
   bool Close() noexcept;
+  void AimAtClosure() noexcept;
   void TakeInertia() noexcept;
   void TakeVelocities() noexcept;
   void TakeError() noexcept;
@@ -112,7 +113,9 @@ class CoupledDynamics {
   SaddleSystem system_;
   MatrixXd M_, A_, held_A_, limited_A_, rootKJ_;
   VectorXd q_, v_, next_q_, next_v_, vdot_, momenta_, bias_, right_, held_right_, limited_right_,
-      x_, rest_, mu_, d_, opening_;
+      x_, aim_, rest_, mu_, d_, opening_;
+  VectorXd miss_;  // by which the last step's aim failed
+
   std::vector<Wrenchd> joints_;
   std::vector<Freedom> freedoms_;
   Posed X_WH_;

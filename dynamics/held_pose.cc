@@ -90,7 +90,6 @@ void HeldPose::SetVelocities(const VectorXd& v) noexcept {
 
 void HeldPose::TakeLoopBias(VectorXd* d) noexcept {
   VelocityProducts(tree_, &ws_);
-  GyroscopicWrenches(tree_, inertias_, &ws_);
   ForwardAccelerations(tree_, nullptr, &ws_);
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
     LoopBias(tree_, ws_, static_cast<int>(l), d->data() + tree_.loops[l].row);
@@ -111,6 +110,7 @@ void HeldPose::SetAccelerations(const VectorXd& vdot) noexcept {
 }
 
 void HeldPose::TakeForces(VectorXd* tau) noexcept {
+  GyroscopicWrenches(tree_, inertias_, &ws_);
   NewtonEuler(tree_, inertias_, &ws_);
   GeneralisedForces(tree_, ws_, tau->data());
 }

@@ -1,7 +1,10 @@
 #include "vmech/kinematics/rotation_error.h"
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
+
+#include "vmech/kinematics/screw_algebra.h"
 
 namespace vmech {
 namespace {
@@ -14,21 +17,28 @@ Matrix3d SymmetricPart(const Matrix3d& A) {
   return 0.5 * (A + A.transpose());
 }
 
-/// asin(x)/x of x^2 <= 0.01, to rounding.
-double ArcsineRatio(double x2) {
-  double sum = 143.0 / 10240;
-  for (double c : {231.0 / 13312, 63.0 / 2816, 35.0 / 1152, 5.0 / 112, 3.0 / 40, 1.0 / 6, 1.0}) {
-    sum = c + x2 * sum;
-  }
-  return sum;
+constexpr double kShortTurn = 1.0 / 16;  // sin^2 of half of 29 degrees
+
+/// angle/sin(angle) of y = sin^2(angle/2) <= kShortTurn, to rounding:
+///
+///   1 + 2/3 y + 2/3 4/5 y^2 + 2/3 4/5 6/7 y^3 + ..
+double AngleOverSine(double y) {
+  constexpr auto c = [] {
+    std::array<double, 13> terms{1};
+    for (int n = 1; n < 13; ++n) terms[n] = terms[n - 1] * (2.0 * n) / (2 * n + 1);
+    return terms;
+  }();
+  const double y2 = y * y, y4 = y2 * y2;
+  const auto four = [&](int n) { return (c[n] + c[n + 1] * y) + (c[n + 2] + c[n + 3] * y) * y2; };
+  return (four(0) + four(4) * y4) + (four(8) + c[12] * y4) * (y4 * y4);
 }
 
 Vector3d Logarithm(const Matrix3d& R) {
   const Vector3d skew = SkewPart(R);  // sin(angle) axis
-  const double sine2 = skew.squaredNorm(), cosine = 0.5 * (R.trace() - 1);
+  const double cosine = 0.5 * (R.trace() - 1), y = 0.5 * (1 - cosine);
+  if (y <= kShortTurn) return AngleOverSine(y) * skew;
   if (cosine > 0) {
-    if (sine2 < 0.01) return ArcsineRatio(sine2) * skew;
-    const double sine = std::sqrt(sine2);
+    const double sine = skew.norm();
     return std::atan2(sine, cosine) / sine * skew;
   }
   Eigen::Quaterniond turn(R);
@@ -70,30 +80,48 @@ Matrix3d LogarithmCurvature(const Vector3d& e, const Vector3d& g) {
   return SymmetricPart(InverseRightJacobian(e).transpose() * B);
 }
 
+/// sin x/x and (1 - cos x)/x^2.
+struct RodriguesCoefficients {
+  double s, c;
+};
+
+RodriguesCoefficients RodriguesAt(double x2) {
+  if (x2 < 0.01) {
+    return {1 - x2 * (1.0 / 6 - x2 * (1.0 / 120 - x2 * (1.0 / 5040 - x2 * (1.0 / 362880)))),
+            0.5 - x2 * (1.0 / 24 - x2 * (1.0 / 720 - x2 * (1.0 / 40320 - x2 * (1.0 / 3628800))))};
+  }
+  const double x = std::sqrt(x2), half = std::sin(x / 2);
+  return {std::sin(x) / x, 2 * half * half / x2};
+}
+
 }  // namespace
 
 Vector6d HandError(const Posed& X_WG, const Posed& X_WH) {
-  return Stacked<double>(X_WH.p - X_WG.p, Logarithm(X_WH.R * X_WG.R.transpose()));
+  const Axes G = AxesOf(X_WG), H = AxesOf(X_WH);
+  // Trace and skew part of R_WH R_WG' = sum h g', which is not written down for a short turn.
+  const Four traces = G.x * H.x + G.y * H.y + G.z * H.z;
+  const double y = 0.25 * (3 - (traces[0] + traces[1] + traces[2]));
+  const Four turn = y <= kShortTurn ? 0.5 * AngleOverSine(y) *
+                                          (Cross(G.x, H.x) + Cross(G.y, H.y) + Cross(G.z, H.z))
+                                    : FourOf(Logarithm(X_WH.R * X_WG.R.transpose()));
+  return Stacked<double>(X_WH.p - X_WG.p, Vector3Of(turn));
 }
 
 Posed Displaced(const Posed& X, const Vector6d& way) noexcept {
-  return {RotationBy(way.tail<3>()) * X.R, X.p + way.head<3>()};
+  const Four r = FourOf(way.tail<3>()), p = FourOf(X.p) + FourOf(way.head<3>());
+  const auto [s, c] = RodriguesAt(Dot(r, r));
+  const auto turned = [&](const Four& a) {
+    const Four ra = Cross(r, a);
+    return a + s * ra + c * Cross(r, ra);
+  };
+  return PoseOf(
+      {turned(FourOf(X.R.col(0))), turned(FourOf(X.R.col(1))), turned(FourOf(X.R.col(2))), p});
 }
 
 Matrix3d RotationBy(const Vector3d& r) noexcept {
-  const double x2 = r.squaredNorm();
-  double s = 0, c = 0;  // sin x/x and (1 - cos x)/x^2
-  if (x2 < 0.01) {
-    s = 1 - x2 * (1.0 / 6 - x2 * (1.0 / 120 - x2 * (1.0 / 5040 - x2 * (1.0 / 362880))));
-    c = 0.5 - x2 * (1.0 / 24 - x2 * (1.0 / 720 - x2 * (1.0 / 40320 - x2 * (1.0 / 3628800))));
-  } else {
-    const double x = std::sqrt(x2), half = std::sin(x / 2);
-    s = std::sin(x) / x;
-    c = 2 * half * half / x2;
-  }
-  Matrix3d R = c * r * r.transpose() + CrossMatrix<double>(s * r);
-  R.diagonal().array() += 1 - c * x2;
-  return R;
+  const Matrix3d S = CrossMatrix<double>(r);
+  const auto [s, c] = RodriguesAt(r.squaredNorm());
+  return Matrix3d::Identity() + s * S + c * S * S;
 }
 
 Vector3d RotationErrorOf(RotationError kind, const Matrix3d& R_E) {

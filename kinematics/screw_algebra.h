@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstring>
+
 #include "vmech/kinematics/screw.h"
 #include "vmech/mechanisms/pose.h"
 
@@ -8,8 +10,13 @@ namespace vmech {
 // Functions of a few instructions each, which keep the last number of a vector zero. How a Four is
 // passed depends on the instruction set: for the sources of the library alone.
 
+/// The last number becomes zero: by a mask, for which compilers find one instruction.
+inline Four FirstThree(const Four& a) noexcept {
+  using Bits = long long __attribute__((vector_size(32)));
+  return reinterpret_cast<Four>(reinterpret_cast<Bits>(a) & Bits{-1, -1, -1, 0});
+}
 inline Four FourOf(const Vector3d& a) noexcept {
-  return Four{a[0], a[1], a[2], 0};
+  return FirstThree(Four{a[0], a[1], a[2], a[2]});
 }
 inline Vector3d Vector3Of(const Four& a) noexcept {
   return {a[0], a[1], a[2]};
@@ -55,15 +62,23 @@ inline Axes operator*(const Axes& X, const Posed& Y) noexcept {
   return Turned(X, Y.R, PointInWorld(X, Y.p));
 }
 inline Axes AxesOf(const Posed& X) noexcept {
-  return {FourOf(X.R.col(0)), FourOf(X.R.col(1)), FourOf(X.R.col(2)), FourOf(X.p)};
+  // R and p as the twelve numbers that they are: whole registers, one number too many in each.
+  static_assert(sizeof(X) == 12 * sizeof(double));
+  const auto from = [&](int i) {
+    Four four;
+    std::memcpy(&four, reinterpret_cast<const char*>(&X) + i * sizeof(double), sizeof(four));
+    return four;
+  };
+  const Four p = from(8);
+  return {FirstThree(from(0)), FirstThree(from(3)), FirstThree(from(6)),
+          FirstThree(__builtin_shufflevector(p, p, 1, 2, 3, 0))};
 }
 inline Matrix3d RotationOf(const Axes& X) noexcept {
   Matrix3d R;
-  for (int i = 0; i < 3; ++i) {
-    R(i, 0) = X.x[i];
-    R(i, 1) = X.y[i];
-    R(i, 2) = X.z[i];
-  }
+  // Each column's fourth number falls on the next column, which comes after it.
+  std::memcpy(R.data(), &X.x, sizeof(Four));
+  std::memcpy(R.data() + 3, &X.y, sizeof(Four));
+  std::memcpy(R.data() + 6, &X.z, 3 * sizeof(double));
   return R;
 }
 inline Posed PoseOf(const Axes& X) noexcept {

@@ -24,7 +24,8 @@ TEST_P(EveryAngle, HandErrorLeadsWhereItIsDisplacedTo) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Angles, EveryAngle,
-                         testing::Values(0, 1e-9, 1e-3, 0.0999, 0.1001, 0.5, 1.6, 3.0));
+                         testing::Values(0, 1e-9, 1e-3, 0.0999, 0.1001, 0.3, 0.505, 0.506, 1.6,
+                                         3.0));
 
 }  // namespace
 }  // namespace vmech
