@@ -5,6 +5,7 @@
 
 #include "vmech/kinematics/forward_kinematics.h"
 #include "vmech/kinematics/rotation_error.h"
+#include "vmech/kinematics/screw_algebra.h"
 #include "vmech/solvers/small_ldlt.h"
 #include "vmech/solvers/stopping_rule.h"
 
@@ -39,27 +40,34 @@ HandCoupling Checked(HandCoupling coupling, GraspKind kind) {
 }
 
 /// Of a spring along `way` that pulls with `pull`, and with no more than `most`.
-double SpringEnergy(const Vector3d& way, const Vector3d& pull, double most) {
-  const double whole = 0.5 * way.dot(pull), force2 = pull.squaredNorm();
+double SpringEnergy(const Four& way, const Four& pull, double most) {
+  const double whole = 0.5 * Dot(way, pull), force2 = Dot(pull, pull);
   if (force2 <= most * most) return whole;
   const double part = most / std::sqrt(force2);  // of the way, until it slips
   return whole * part * (2 - part);
 }
 
 /// Shortens a vector to `most`. True if it was longer.
-bool Shorten(double most, Eigen::Ref<Vector3d> a) {
-  const double length2 = a.squaredNorm();
+bool Shorten(double most, Four* a) {
+  const double length2 = Dot(*a, *a);
   if (length2 <= most * most) return false;
-  a *= most / std::sqrt(length2);
+  *a *= most / std::sqrt(length2);
   return true;
 }
 
 }  // namespace
 
+CoupledDynamics::Coupling::Coupling(const HandCoupling& coupling, double step)
+    : stiffness(ScrewOf(coupling.stiffness)),
+      damping(ScrewOf(coupling.damping)),
+      root_gain(ScrewOf((coupling.damping + step * coupling.stiffness).cwiseSqrt())),
+      max_force(coupling.max_force),
+      max_moment(coupling.max_moment) {}
+
 CoupledDynamics::CoupledDynamics(const KinematicTree& tree, const GraspFrame& grasp,
                                  const HandCoupling& coupling, double step, const VectorXd& q)
     : tree_(tree),
-      coupling_(Checked(coupling, grasp.kind)),
+      coupling_(Checked(coupling, grasp.kind), step),
       T_(step),
       pose_(tree, grasp),
       system_(tree.nv, static_cast<int>(pose_.C().rows())),
@@ -89,7 +97,8 @@ CoupledDynamics::CoupledDynamics(const KinematicTree& tree, const GraspFrame& gr
   CheckRange("CoupledDynamics", "step", step, 1e-7, 1);
   RefuseUnrenderedFriction(tree);
   ListFreedoms();
-  X_WH_ = pose_.Set(q);
+  pose_.Set(q);
+  H_ = pose_.grasp_axes();
   TakeInertia();
   TakeVelocities();
   BiasForces();
@@ -125,8 +134,8 @@ void CoupledDynamics::TakeHold(const GraspFrame& grasp) noexcept {
 }
 
 CoupledStatus CoupledDynamics::Step(const Posed& X_WH, const Vector6d& V_WH) noexcept {
-  X_WH_ = X_WH;
-  V_WH_ = V_WH;
+  H_ = AxesOf(X_WH);
+  V_WH_ = ScrewOf(V_WH);
   TakeError();
   const double before = Energy();
   BiasForces();
@@ -172,11 +181,10 @@ void CoupledDynamics::AddCoupling() noexcept {
     held_A_ = A_;
     return;
   }
-  const Vector6d gain = coupling_.damping + T_ * coupling_.stiffness;
-  rootKJ_.topRows<6>() = gain.cwiseSqrt().asDiagonal() * pose_.J();
+  pose_.TakeWeightedJacobian(coupling_.root_gain, &rootKJ_);
   system_.Gram(rootKJ_, &held_A_);
   held_A_ += A_;
-  pose_.AddForces(coupling_.stiffness.cwiseProduct(e1_) + coupling_.damping.cwiseProduct(V_WH_),
+  pose_.AddForces(Scaled(coupling_.stiffness, e1_) + Scaled(coupling_.damping, V_WH_),
                   &held_right_);
 }
 
@@ -184,14 +192,13 @@ void CoupledDynamics::AddCoupling() noexcept {
 /// shortened to that.
 bool CoupledDynamics::Slip() noexcept {
   if (!coupled_) {
-    w_.setZero();
+    w_ = {};
     return slipping_ = false;
   }
-  const Vector6d V_WG = pose_.Twist(next_v_);
-  w_ = coupling_.stiffness.cwiseProduct(e1_ - T_ * V_WG) +
-       coupling_.damping.cwiseProduct(V_WH_ - V_WG);
-  const bool force_slips = Shorten(coupling_.max_force, w_.head<3>());
-  const bool moment_slips = Shorten(coupling_.max_moment, w_.tail<3>());
+  const Screw V_WG = pose_.Twist(next_v_);
+  w_ = Scaled(coupling_.stiffness, e1_ - T_ * V_WG) + Scaled(coupling_.damping, V_WH_ - V_WG);
+  const bool force_slips = Shorten(coupling_.max_force, &w_.linear);
+  const bool moment_slips = Shorten(coupling_.max_moment, &w_.angular);
   return slipping_ = force_slips || moment_slips;
 }
 
@@ -289,7 +296,7 @@ CoupledStatus CoupledDynamics::Move() noexcept {
   system_.SetConstraints(pose_.C());
   TakeInertia();
   TakeVelocities();
-  if (!w_.allFinite()) return CoupledStatus::kFailed;
+  if (!std::isfinite(Power(w_, w_))) return CoupledStatus::kFailed;
   return closed ? CoupledStatus::kMoved : CoupledStatus::kStopped;
 }
 
@@ -343,8 +350,8 @@ void CoupledDynamics::TakeVelocities() noexcept {
 /// rest is taken out of the velocities.
 void CoupledDynamics::KeepEnergy(double before) noexcept {
   constexpr double kMemory = 0.05;  // of the kinetic energy that losses are remembered for
-  const Vector6d V = V_WG();
-  const double dragged = T_ * coupling_.damping.cwiseProduct(V_WH_ - V).dot(V);
+  const Screw V = pose_.Twist(v_);
+  const double dragged = T_ * Power(Scaled(coupling_.damping, V_WH_ - V), V);
   const double gained = Energy() - before - (coupled_ ? std::max(0.0, dragged) : 0);
   lost_ = std::min(lost_ - gained, kMemory * kinetic_);
   if (lost_ >= 0 || kinetic_ == 0) return;
@@ -355,11 +362,23 @@ void CoupledDynamics::KeepEnergy(double before) noexcept {
 
 /// e1, and the energy of the coupling.
 void CoupledDynamics::TakeError() noexcept {
-  e1_ = HandError(pose_.X_WG(), X_WH_);
+  e1_ = HandError(pose_.grasp_axes(), H_);
   if (!coupled_) return;
-  const Vector6d pull = coupling_.stiffness.cwiseProduct(e1_);
-  spring_ = SpringEnergy(e1_.head<3>(), pull.head<3>(), coupling_.max_force) +
-            SpringEnergy(e1_.tail<3>(), pull.tail<3>(), coupling_.max_moment);
+  const Screw pull = Scaled(coupling_.stiffness, e1_);
+  spring_ = SpringEnergy(e1_.linear, pull.linear, coupling_.max_force) +
+            SpringEnergy(e1_.angular, pull.angular, coupling_.max_moment);
+}
+
+Vector6d CoupledDynamics::e1() const noexcept {
+  return Vector6Of(e1_);
+}
+
+Vector6d CoupledDynamics::w() const noexcept {
+  return Vector6Of(w_);
+}
+
+Vector6d CoupledDynamics::V_WG() const noexcept {
+  return Vector6Of(pose_.Twist(v_));
 }
 
 }  // namespace vmech

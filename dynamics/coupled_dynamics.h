@@ -62,13 +62,13 @@ class CoupledDynamics {
   // After the last step.
   const VectorXd& q() const noexcept { return q_; }
   const VectorXd& v() const noexcept { return v_; }
-  const Posed& X_WG() const noexcept { return pose_.X_WG(); }
+  Posed X_WG() const noexcept { return pose_.X_WG(); }
   /// HandError of the hand [6; m, rad].
-  const Vector6d& e1() const noexcept { return e1_; }
+  Vector6d e1() const noexcept;
   const HeldPose& pose() const noexcept { return pose_; }
-  Vector6d V_WG() const noexcept { return pose_.Twist(v_); }
+  Vector6d V_WG() const noexcept;  ///< of Go, world axes [v; w]
   /// Hand on mechanism during the step, at Go, world axes: what the coupling pulls.
-  const Vector6d& w() const noexcept { return w_; }
+  Vector6d w() const noexcept;
   /// Every joint's wrench during the step, as HandDynamics::joints.
   const std::vector<Wrenchd>& joints() const noexcept { return joints_; }
   /// Kinetic energy, weight, springs of joints and coupling [J].
@@ -84,6 +84,14 @@ class CoupledDynamics {
     Passive passive;
     double lower, upper;
     int contact = 0;  // -1 at the lower limit, 1 at the upper
+  };
+
+  /// HandCoupling in whole registers.
+  struct Coupling {
+    Coupling(const HandCoupling& coupling, double step);
+    Screw stiffness, damping;
+    Screw root_gain;  ///< (B + T K)^1/2
+    double max_force, max_moment;
   };
 
   enum class Solving { kFully, kRoughly };
@@ -107,7 +115,7 @@ class CoupledDynamics {
   void KeepEnergy(double before) noexcept;
 
   const KinematicTree& tree_;
-  HandCoupling coupling_;
+  Coupling coupling_;
   double T_;
   HeldPose pose_;
   SaddleSystem system_;
@@ -118,8 +126,8 @@ class CoupledDynamics {
 
   std::vector<Wrenchd> joints_;
   std::vector<Freedom> freedoms_;
-  Posed X_WH_;
-  Vector6d e1_ = Vector6d::Zero(), V_WH_ = Vector6d::Zero(), w_ = Vector6d::Zero();
+  Axes H_;               // of the hand
+  Screw e1_, V_WH_, w_;  // about Ho or Go
   double closure_ = 0;
   double kinetic_ = 0, potential_ = 0;  // without the coupling's [J]
   double spring_ = 0;                   // of the coupling [J]

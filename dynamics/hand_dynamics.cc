@@ -8,6 +8,7 @@
 
 #include "vmech/dynamics/passive.h"
 #include "vmech/kinematics/linear_algebra.h"
+#include "vmech/kinematics/screw_algebra.h"
 #include "vmech/solvers/small_ldlt.h"
 
 namespace vmech {
@@ -83,24 +84,25 @@ bool HandDynamics::Evaluate(const Vector6d& V_WG, const Vector6d& A_WG, double i
   felt_v_ = std::sqrt(inertia) * v_;
   pose_.SetVelocities(felt_v_);
   pose_.TakeLoopBias(&d_);
-  SolveMotion(inertia * A_WG - pose_.GraspBias(), d_, &vdot_);
+  SolveMotion(inertia * A_WG - Vector6Of(pose_.GraspBias()), d_, &vdot_);
   pose_.SetAccelerations(vdot_);
   pose_.TakeForces(&tau_);
   PassiveForces();
   system_.Solve(A_, pose_.C(), tau_, none_, &x_);
-  w_d_ = K_.cwiseProduct(pose_.Twist(x_));
+  w_d_ = K_.cwiseProduct(Vector6Of(pose_.Twist(x_)));
   system_.TakeMultipliers(pose_.C(), none_, &mu_);
-  pose_.LoadJoints(w_d_, mu_, &joints_);
+  pose_.LoadJoints(ScrewOf(w_d_), mu_, &joints_);
   return w_d_.allFinite();
 }
 
-const Posed& HandDynamics::SetPose(const VectorXd& q) noexcept {
+Posed HandDynamics::SetPose(const VectorXd& q) noexcept {
   q_ = q;
-  return pose_.Set(q);
+  pose_.Set(q);
+  return pose_.X_WG();
 }
 
 bool HandDynamics::Factor() noexcept {
-  rootKJ_.topRows<6>() = root_K_.asDiagonal() * pose_.J();
+  pose_.TakeWeightedJacobian(ScrewOf(root_K_), &rootKJ_);
   system_.Gram(rootKJ_, &A_);
   A_.diagonal().array() += kDamping * A_.trace();
   system_.SetConstraints(pose_.C());
@@ -110,7 +112,7 @@ bool HandDynamics::Factor() noexcept {
 /// min |J x - b|_K subject to C x = d.
 void HandDynamics::SolveMotion(const Vector6d& b, const VectorXd& d, VectorXd* x) noexcept {
   right_.setZero();
-  pose_.AddForces(K_.cwiseProduct(b), &right_);
+  pose_.AddForces(ScrewOf(K_.cwiseProduct(b)), &right_);
   system_.Solve(A_, pose_.C(), right_, d, x);
 }
 

@@ -33,7 +33,7 @@ class HandDynamics {
                const VectorXd& q);
 
   /// Takes the closed pose q [nq]; returns that of the grasp frame.
-  const Posed& SetPose(const VectorXd& q) noexcept;
+  Posed SetPose(const VectorXd& q) noexcept;
   /// There, with the twist and acceleration of Go, world axes [linear; angular], as far as the
   /// loops allow them, of a mechanism with a share of its inertia, in [0, 1]: weight, springs and
   /// dampers are whole. False, and results undefined, if a value is not finite.

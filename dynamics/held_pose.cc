@@ -26,15 +26,15 @@ HeldPose::HeldPose(const KinematicTree& tree, const GraspFrame& grasp)
       row_scale_(LoopRowScale(tree)),
       ws_(tree),
       inertias_(tree),
-      J_(Matrix6Xd::Zero(6, tree.nv)),
+      J_(tree.nv),
       C_(MatrixXd::Zero(PaddedSize(tree.rows), tree.nv)),
       e2_(VectorXd::Zero(C_.rows())) {
   FallUpwards(tree.mechanism.gravity_W, &ws_);
 }
 
-const Posed& HeldPose::Set(const VectorXd& q) noexcept {
+void HeldPose::Set(const VectorXd& q) noexcept {
   SetLoops(q);
-  return SetJacobians();
+  SetJacobians();
 }
 
 void HeldPose::SetLoops(const VectorXd& q) noexcept {
@@ -47,12 +47,11 @@ void HeldPose::SetLoops(const VectorXd& q) noexcept {
   }
 }
 
-const Posed& HeldPose::SetJacobians() noexcept {
+void HeldPose::SetJacobians() noexcept {
   JointScrews(tree_, &ws_);
   BodyInertias(tree_, ws_, &inertias_);
-  const Axes G = ws_.at(grasp_.node).X * grasp_.X_BG;
-  X_WG_ = PoseOf(G);
-  PointJacobian(tree_, ws_, grasp_.node, G.p, &J_);
+  G_ = ws_.at(grasp_.node).X * grasp_.X_BG;
+  PointJacobian(tree_, ws_, grasp_.node, G_.p, &J_);
   LoopWrenches(tree_, row_scale_.data(), &ws_);
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
     const Loop& loop = tree_.loops[l];
@@ -63,21 +62,38 @@ const Posed& HeldPose::SetJacobians() noexcept {
       }
     }
   }
-  return X_WG_;
+}
+
+Posed HeldPose::X_WG() const noexcept {
+  return PoseOf(G_);
+}
+
+Matrix6Xd HeldPose::J() const {
+  Matrix6Xd J(6, tree_.nv);
+  FillMatrix(J_, &J);
+  return J;
+}
+
+void HeldPose::TakeWeightedJacobian(const Screw& root, MatrixXd* B) const noexcept {
+  for (int i = 0; i < tree_.nv; ++i) {
+    const Screw column = Scaled(root, J_[i]);
+    StoreFour(column.linear, &(*B)(0, i));
+    StoreFour(column.angular, &(*B)(4, i));
+  }
 }
 
 Posed HeldPose::X_WB(int node) const noexcept {
   return PoseOf(ws_.at(node).X);
 }
 
-Vector6d HeldPose::Twist(const VectorXd& v) const noexcept {
-  Vector6d V = Vector6d::Zero();
-  for (int i = 0; i < tree_.nv; ++i) V += v[i] * J_.col(i);
+Screw HeldPose::Twist(const VectorXd& v) const noexcept {
+  Screw V;
+  for (int i = 0; i < tree_.nv; ++i) V += v[i] * J_[i];
   return V;
 }
 
-void HeldPose::AddForces(const Vector6d& w_Go, VectorXd* tau) const noexcept {
-  for (int i = 0; i < tree_.nv; ++i) (*tau)[i] += J_.col(i).dot(w_Go);
+void HeldPose::AddForces(const Screw& w, VectorXd* tau) const noexcept {
+  for (int i = 0; i < tree_.nv; ++i) (*tau)[i] += Power(w, J_[i]);
 }
 
 void HeldPose::TakeMassMatrix(MatrixXd* M) noexcept {
@@ -97,12 +113,11 @@ void HeldPose::TakeLoopBias(VectorXd* d) noexcept {
   *d = -*d;
 }
 
-Vector6d HeldPose::GraspBias() const noexcept {
+Screw HeldPose::GraspBias() const noexcept {
   const ScrewWorkspace::Node& node = ws_.at(grasp_.node);
   const Screw A = node.A - ws_.at(-1).A;
-  const Four p = FourOf(X_WG_.p);
-  const Four a = VelocityAt(p, A) + Cross(node.V.angular, VelocityAt(p, node.V));
-  return Stacked<double>(Vector3Of(a), Vector3Of(A.angular));
+  const Four a = VelocityAt(G_.p, A) + Cross(node.V.angular, VelocityAt(G_.p, node.V));
+  return {a, A.angular};
 }
 
 void HeldPose::SetAccelerations(const VectorXd& vdot) noexcept {
@@ -111,14 +126,13 @@ void HeldPose::SetAccelerations(const VectorXd& vdot) noexcept {
 
 void HeldPose::TakeForces(VectorXd* tau) noexcept {
   GyroscopicWrenches(tree_, inertias_, &ws_);
-  NewtonEuler(tree_, inertias_, &ws_);
-  GeneralisedForces(tree_, ws_, tau->data());
+  NewtonEuler(tree_, inertias_, &ws_, tau->data());
 }
 
-void HeldPose::LoadJoints(const Vector6d& w_hand, const VectorXd& mu,
+void HeldPose::LoadJoints(const Screw& w, const VectorXd& mu,
                           std::vector<Wrenchd>* joints) noexcept {
-  NewtonEuler(tree_, inertias_, &ws_);
-  const Screw hand = WrenchAt(FourOf(X_WG_.p), FourOf(w_hand.head<3>()), FourOf(w_hand.tail<3>()));
+  NewtonEuler(tree_, inertias_, &ws_, nullptr);
+  const Screw hand = WrenchAt(G_.p, w.linear, w.angular);
   for (int n = grasp_.node; n >= 0; n = tree_.nodes[n].parent) ws_.at(n).F -= hand;
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
     const Loop& loop = tree_.loops[l];

@@ -19,22 +19,26 @@ class HeldPose {
   void SetGrasp(const GraspFrame& grasp) noexcept { grasp_ = grasp; }
   const GraspFrame& grasp() const noexcept { return grasp_; }
 
-  /// Takes q [nq]; returns the pose of the grasp frame.
-  const Posed& Set(const VectorXd& q) noexcept;
+  /// Takes q [nq].
+  void Set(const VectorXd& q) noexcept;
   /// The first half of Set, nodes and loop errors, as needed between two steps of a closure.
   void SetLoops(const VectorXd& q) noexcept;
   /// The other half: grasp frame, Jacobians and inertias.
-  const Posed& SetJacobians() noexcept;
+  void SetJacobians() noexcept;
 
-  const Posed& X_WG() const noexcept { return X_WG_; }
+  Posed X_WG() const noexcept;
+  const Axes& grasp_axes() const noexcept { return G_; }  ///< the same
   Posed X_WB(int node) const noexcept;
-  const Matrix6Xd& J() const noexcept { return J_; }  ///< [6, nv], V_WG = J v
+  Matrix6Xd J() const;  ///< [6, nv], V_WG = J v
+  /// B [8, nv] = root J with zeros below either three rows: B'B = J' root^2 J.
+  void TakeWeightedJacobian(const Screw& root, MatrixXd* B) const noexcept;
   /// [rows, nv], C v = 0; lengths over the characteristic length, padded with rows of zeros.
   const MatrixXd& C() const noexcept { return C_; }
   const VectorXd& e2() const noexcept { return e2_; }  ///< loop errors, scaled and padded like C
 
-  Vector6d Twist(const VectorXd& v) const noexcept;                    ///< J v
-  void AddForces(const Vector6d& w_Go, VectorXd* tau) const noexcept;  ///< tau += J'w
+  // Twists and wrenches of the grasp frame: about Go.
+  Screw Twist(const VectorXd& v) const noexcept;                 ///< J v
+  void AddForces(const Screw& w, VectorXd* tau) const noexcept;  ///< tau += J'w
 
   /// M [nv, nv].
   void TakeMassMatrix(MatrixXd* M) noexcept;
@@ -46,7 +50,7 @@ class HeldPose {
   /// and padded like C.
   void TakeLoopBias(VectorXd* d) noexcept;
   /// The acceleration of Go for v' = 0.
-  Vector6d GraspBias() const noexcept;
+  Screw GraspBias() const noexcept;
   /// Takes v' [nv].
   void SetAccelerations(const VectorXd& vdot) noexcept;
   /// M v' + h [nv].
@@ -54,8 +58,7 @@ class HeldPose {
   /// Joint by joint of the mechanism, what the first link exerts on the second about the second
   /// anchor's origin, axes of the first anchor, while a hand exerts w at Go and the loops the
   /// multipliers of tau = J' w + C' mu.
-  void LoadJoints(const Vector6d& w_hand, const VectorXd& mu,
-                  std::vector<Wrenchd>* joints) noexcept;
+  void LoadJoints(const Screw& w, const VectorXd& mu, std::vector<Wrenchd>* joints) noexcept;
 
   /// Zero with all centres of gravity at the height of Wo [J].
   double WeightEnergy() const noexcept { return vmech::WeightEnergy(tree_, inertias_); }
@@ -66,8 +69,8 @@ class HeldPose {
   VectorXd row_scale_;
   ScrewWorkspace ws_;
   ScrewInertias inertias_;
-  Posed X_WG_;
-  Matrix6Xd J_;
+  Axes G_;                // of the grasp frame
+  std::vector<Screw> J_;  // columns
   MatrixXd C_;
   VectorXd e2_;
 };

@@ -17,16 +17,19 @@ ScrewInertia InertiaInWorld(const TreeNode& node, const Axes& X) {
           column(2) + Four{0, 0, square, 0}};
 }
 
-/// Every node carries its children.
-void HandOn(const KinematicTree& tree, ScrewWorkspace* ws) {
+/// Every node carries its children. Writes the generalised forces, unless null.
+void HandOn(const KinematicTree& tree, ScrewWorkspace* ws, double* tau) {
   ws->nodes[0].F = {};
   Screw sum;  // what this node gets from the next, in registers: a chain need not wait for memory
   for (int i = static_cast<int>(tree.nodes.size()); i-- > 0;) {
-    const int parent = tree.nodes[i].parent;
+    const TreeNode& node = tree.nodes[i];
     sum += ws->at(i).F;
     ws->at(i).F = sum;
-    if (parent == i - 1) continue;
-    ws->at(parent).F += sum;
+    for (int v = node.v; tau && v < node.v + VelocitiesOf(node.motion); ++v) {
+      tau[v] = Power(sum, ws->S[v]);
+    }
+    if (node.parent == i - 1) continue;
+    ws->at(node.parent).F += sum;
     sum = {};
   }
   ws->nodes[0].F += sum;
@@ -78,16 +81,18 @@ void GyroscopicWrenches(const KinematicTree& tree, const ScrewInertias& inertias
   }
 }
 
-void NewtonEuler(const KinematicTree& tree, const ScrewInertias& inertias,
-                 ScrewWorkspace* ws) noexcept {
+void NewtonEuler(const KinematicTree& tree, const ScrewInertias& inertias, ScrewWorkspace* ws,
+                 double* tau) noexcept {
   for (size_t i = 0; i < tree.nodes.size(); ++i) {
     ScrewWorkspace::Node& s = ws->nodes[i + 1];
     s.F = tree.nodes[i].link < 0 ? Screw{} : inertias.bodies[i + 1] * s.A + s.p;
   }
-  HandOn(tree, ws);
+  HandOn(tree, ws, tau);
 }
 
-void Momenta(const KinematicTree& tree, ScrewWorkspace* ws) noexcept {
+void Momenta(const KinematicTree& tree, const double* v, ScrewWorkspace* ws,
+             double* momenta) noexcept {
+  ForwardVelocities(tree, v, ws);
   for (size_t i = 0; i < tree.nodes.size(); ++i) {
     const TreeNode& node = tree.nodes[i];
     ScrewWorkspace::Node& s = ws->nodes[i + 1];
@@ -99,7 +104,7 @@ void Momenta(const KinematicTree& tree, ScrewWorkspace* ws) noexcept {
     const Vector3d spin = w_B[0] * I.col(0) + w_B[1] * I.col(1) + w_B[2] * I.col(2);
     s.F = WrenchAt(c, linear, Turned(s.X, spin));
   }
-  HandOn(tree, ws);
+  HandOn(tree, ws, momenta);
 }
 
 double KineticEnergy(const KinematicTree& tree, const ScrewInertias& inertias,
@@ -115,16 +120,6 @@ double WeightEnergy(const KinematicTree& tree, const ScrewInertias& inertias) no
   Four moment{};
   for (const ScrewInertia& body : inertias.bodies) moment += body.moment;
   return -Dot(FourOf(tree.mechanism.gravity_W), moment);
-}
-
-void GeneralisedForces(const KinematicTree& tree, const ScrewWorkspace& ws, double* tau) noexcept {
-  const ScrewWorkspace::Node* state = ws.nodes.data();
-  for (const TreeNode& node : tree.nodes) {
-    ++state;
-    for (int v = node.v; v < node.v + VelocitiesOf(node.motion); ++v) {
-      tau[v] = Power(state->F, ws.S[v]);
-    }
-  }
 }
 
 }  // namespace vmech

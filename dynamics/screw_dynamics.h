@@ -35,12 +35,14 @@ void CompositeMassMatrix(const KinematicTree& tree, const ScrewWorkspace& ws,
 /// Needs BodyInertias and V; writes p.
 void GyroscopicWrenches(const KinematicTree& tree, const ScrewInertias& inertias,
                         ScrewWorkspace* ws) noexcept;
-/// F that moves the nodes. Needs A, p and BodyInertias.
-void NewtonEuler(const KinematicTree& tree, const ScrewInertias& inertias,
-                 ScrewWorkspace* ws) noexcept;
-/// F that would bring the nodes from rest to V in a second: their momenta. Needs V; quicker than to
-/// find inertias for this alone.
-void Momenta(const KinematicTree& tree, ScrewWorkspace* ws) noexcept;
+/// F that moves the nodes, and the generalised forces S . F [nv], unless null. Needs A, p and
+/// BodyInertias.
+void NewtonEuler(const KinematicTree& tree, const ScrewInertias& inertias, ScrewWorkspace* ws,
+                 double* tau) noexcept;
+/// The joints' momenta M v [nv] at velocities v [nv]: the forces that bring them there from rest in
+/// a second. Needs S; writes V and F. Quicker than to find inertias for this alone.
+void Momenta(const KinematicTree& tree, const double* v, ScrewWorkspace* ws,
+             double* momenta) noexcept;
 
 /// Kinetic energy at V [J].
 double KineticEnergy(const KinematicTree& tree, const ScrewInertias& inertias,
@@ -48,8 +50,5 @@ double KineticEnergy(const KinematicTree& tree, const ScrewInertias& inertias,
 /// - sum m g . p_cm [J], zero where every centre of gravity is at the height of Wo. Needs
 /// BodyInertias.
 double WeightEnergy(const KinematicTree& tree, const ScrewInertias& inertias) noexcept;
-
-/// tau_v = S_v . F [nv].
-void GeneralisedForces(const KinematicTree& tree, const ScrewWorkspace& ws, double* tau) noexcept;
 
 }  // namespace vmech

@@ -30,6 +30,7 @@ ArmModel::ArmModel(std::shared_ptr<const ArmDescription> arm)
     : arm_(Checked(std::move(arm))),
       ws_(arm_->tree),
       inertias_(arm_->tree),
+      columns_(joints()),
       J_(Matrix6Xd::Zero(6, joints())),
       M_(MatrixXd::Zero(joints(), joints())),
       bias_(VectorXd::Zero(joints())),
@@ -50,8 +51,15 @@ Posed ArmModel::X_DH() const noexcept {
 }
 
 const Matrix6Xd& ArmModel::J() noexcept {
-  PointJacobian(arm_->tree, ws_, arm_->handle_node, FourOf(X_DH().p), &J_);
+  PointJacobian(arm_->tree, ws_, arm_->handle_node, FourOf(X_DH().p), &columns_);
+  FillMatrix(columns_, &J_);
   return J_;
+}
+
+Screw ArmModel::WrenchAtBase(const Vector6d& F_Ho) const noexcept {
+  const Four p_DH = PointInWorld(ws_.at(arm_->handle_node).X, arm_->X_BH.p);
+  const Screw F = ScrewOf(F_Ho);
+  return WrenchAt(p_DH, F.linear, F.angular);
 }
 
 /// h(q, v) - J'F.
@@ -62,9 +70,9 @@ void ArmModel::BiasForces(const VectorXd& v, const Wrenchd& F_Ho) noexcept {
   BodyInertias(tree, ws_, &inertias_);
   ForwardAccelerations(tree, nullptr, &ws_);
   GyroscopicWrenches(tree, inertias_, &ws_);
-  NewtonEuler(tree, inertias_, &ws_);
-  GeneralisedForces(tree, ws_, bias_.data());
-  bias_.noalias() -= J().transpose() * F_Ho.Stacked();
+  NewtonEuler(tree, inertias_, &ws_, bias_.data());
+  const Screw F_Do = WrenchAtBase(F_Ho.Stacked());
+  for (int i = 0; i < joints(); ++i) bias_[i] -= Power(F_Do, ws_.S[i]);
 }
 
 const VectorXd& ArmModel::GravityTorques() noexcept {
@@ -79,9 +87,7 @@ const MatrixXd& ArmModel::MassMatrix() noexcept {
 }
 
 void ArmModel::Momenta(const double* v, double* momenta) noexcept {
-  ForwardVelocities(arm_->tree, v, &ws_);
-  vmech::Momenta(arm_->tree, &ws_);
-  GeneralisedForces(arm_->tree, ws_, momenta);
+  vmech::Momenta(arm_->tree, v, &ws_, momenta);
 }
 
 double ArmModel::PotentialEnergy() noexcept {

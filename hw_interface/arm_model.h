@@ -11,6 +11,8 @@
 namespace vmech {
 
 inline constexpr int kMaxArmJoints = 16;
+/// A number for each of an arm's joints, and zeros for those that it does not have.
+using JointArray = Eigen::Array<double, kMaxArmJoints, 1>;
 
 /// A master that is an arm: an open chain of revolute and prismatic joints with its mass
 /// properties, limits and passive forces. World of the tree is the master's base D.
@@ -43,6 +45,8 @@ class ArmModel {
   const Matrix6Xd& J() noexcept;  ///< [6, joints], about Ho, axes of D
   /// Columns of J about Do [joints].
   const std::vector<Screw>& S() const noexcept { return ws_.S; }
+  /// A wrench on the handle, about Ho, as one about Do: its power on a column of S is a torque.
+  Screw WrenchAtBase(const Vector6d& F_Ho) const noexcept;
 
   /// The torques that hold the arm still against gravity, h(q, 0).
   const VectorXd& GravityTorques() noexcept;
@@ -64,6 +68,7 @@ class ArmModel {
   std::shared_ptr<const ArmDescription> arm_;
   ScrewWorkspace ws_;
   ScrewInertias inertias_;
+  std::vector<Screw> columns_;  // of J
   Matrix6Xd J_;
   MatrixXd M_;
   VectorXd bias_, rest_, acceleration_;

@@ -4,6 +4,7 @@
 
 #include "vmech/hw_interface/arm_model.h"
 #include "vmech/hw_interface/estimators.h"
+#include "vmech/hw_interface/handle_null_space.h"
 #include "vmech/hw_interface/master.h"
 #include "vmech/hw_interface/nonblocking.h"
 
@@ -38,19 +39,13 @@ class ArmTorques {
                MasterCommand* command) noexcept VMECH_NONBLOCKING;
 
  private:
-  int FindFreeMotions() noexcept;
-  double Eliminate(bool search) noexcept;
-  void BringLargestForward(int row) noexcept;
-
   PostureOptions options_;
   ArmModel arm_;
-  std::vector<KalmanEstimator> velocity_;
-  VectorXd posture_torque_, torque_;
-  MatrixXd reduced_;                        // [8, joints] S, as Eliminate leaves it
-  std::array<int, kMaxArmJoints> joint_{};  // in the order of elimination; those of pivots first
-  std::array<int, 6> pivot_row_{};
-  int rank_ = 0;
-  MatrixXd free_, momenta_;  // n_k and M n_k, column by column
+  JointArray posture_;  // the nominal one
+  KalmanEstimator<JointArray> velocity_;
+  JointArray posture_torque_ = JointArray::Zero(), torque_ = JointArray::Zero();
+  HandleNullSpace null_space_;
+  std::array<JointArray, kMaxArmJoints> motions_, momenta_;  // n_k and M n_k
 };
 
 }  // namespace vmech

@@ -55,26 +55,11 @@ MotionEstimate FiniteDifferences::Update(double x) noexcept {
   return last_ = {x, v, (v - last_.v) * rate_};
 }
 
-KalmanEstimator::KalmanEstimator(double period, double resolution, double jerk_density)
-    : period_(CheckedPeriod(period)) {
+std::array<double, 3> KalmanGains(double period, double resolution, double jerk_density) {
+  CheckedPeriod(period);
   CheckRange("KalmanEstimator", "resolution", resolution, 1e-12, 1);
   CheckRange("KalmanEstimator", "jerk_density", jerk_density, 1e-6, 1e12);
-  gain_ = SteadyGains(period, resolution * resolution / 12, jerk_density);
-}
-
-MotionEstimate KalmanEstimator::Update(double x) noexcept {
-  if (!started_) {
-    started_ = true;
-    return s_ = {x, 0, 0};
-  }
-  const double T = period_;
-  s_.x += T * (s_.v + 0.5 * T * s_.a);
-  s_.v += T * s_.a;
-  const double innovation = x - s_.x;
-  s_.x += gain_[0] * innovation;
-  s_.v += gain_[1] * innovation;
-  s_.a += gain_[2] * innovation;
-  return s_;
+  return SteadyGains(period, resolution * resolution / 12, jerk_density);
 }
 
 QuadraticFit::QuadraticFit(double period, int window) : window_(window) {

@@ -9,9 +9,11 @@ namespace vmech {
 /// O(window) at most, without allocation. The first sample after construction or Reset is taken to
 /// be at rest. What each leaves of a real motion behind a 16-bit encoder at 1 kHz is measured in
 /// estimators_test.cc.
-struct MotionEstimate {
-  double x = 0, v = 0, a = 0;
+template <typename Coordinate>
+struct MotionEstimateOf {
+  Coordinate x{}, v{}, a{};
 };
+using MotionEstimate = MotionEstimateOf<double>;
 
 /// The paper's way: v = (x_k - x_k-1)/T, a = (v_k - v_k-1)/T. An encoder step D gives an
 /// acceleration of D/T^2.
@@ -27,27 +29,45 @@ class FiniteDifferences {
   MotionEstimate last_;
 };
 
+/// k [3] of a KalmanEstimator. `resolution` [unit] of the sensor, R = resolution^2 / 12, > 0;
+/// `jerk_density` [unit^2/s^5] > 0: raise it for faster motion, lower it for less noise. 1e4 suits
+/// a hand that moves radians.
+std::array<double, 3> KalmanGains(double period, double resolution, double jerk_density);
+
 /// Steady-state Kalman filter of the state (x, v, a) driven by white jerk of density q_j, measured
 /// with variance R:
 ///
 ///   F = [1 T T^2/2; 0 1 T; 0 0 1],   Q = q_j [T^5/20 T^4/8 T^3/6; . T^3/3 T^2/2; . . T],
 ///   s <- F s,   s <- s + k (x - s_x).
 ///
-/// The gains k depend on q_j / R and T alone and are found once.
+/// The gains k depend on q_j / R and T alone and are found once. A Coordinate is a number, or an
+/// array of those that share them.
+template <typename Coordinate = double>
 class KalmanEstimator {
  public:
-  /// `resolution` [unit] of the sensor, R = resolution^2 / 12, > 0; `jerk_density` [unit^2/s^5] >
-  /// 0: raise it for faster motion, lower it for less noise. 1e4 suits a hand that moves radians.
-  KalmanEstimator(double period, double resolution, double jerk_density = 1e4);
+  /// As KalmanGains.
+  KalmanEstimator(double period, double resolution, double jerk_density = 1e4)
+      : period_(period), gain_(KalmanGains(period, resolution, jerk_density)) {}
   void Reset() noexcept { started_ = false; }
-  MotionEstimate Update(double x) noexcept;
-  const std::array<double, 3>& gains() const noexcept { return gain_; }
+  const MotionEstimateOf<Coordinate>& Update(const Coordinate& x) noexcept {
+    if (!started_) {
+      started_ = true;
+      return s_ = {x, 0 * x, 0 * x};
+    }
+    s_.x += period_ * (s_.v + 0.5 * period_ * s_.a);
+    s_.v += period_ * s_.a;
+    const Coordinate innovation = x - s_.x;
+    s_.x += gain_[0] * innovation;
+    s_.v += gain_[1] * innovation;
+    s_.a += gain_[2] * innovation;
+    return s_;
+  }
 
  private:
   double period_;
   std::array<double, 3> gain_;
   bool started_ = false;
-  MotionEstimate s_;
+  MotionEstimateOf<Coordinate> s_;
 };
 
 /// Least-squares parabola through the last n samples, its value and derivatives at the newest:

@@ -28,7 +28,7 @@ const DeviceInfo& Checked(const DeviceInfo& info) {
 std::array<double, 3> GainsFor(double bandwidth, double period) {
   constexpr double kStep = 1e-3;
   const double jerk_density = std::pow(bandwidth, 6) * period * kStep * kStep / 12;
-  return KalmanEstimator(period, kStep, jerk_density).gains();
+  return KalmanGains(period, kStep, jerk_density);
 }
 
 }  // namespace

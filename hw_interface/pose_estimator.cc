@@ -10,7 +10,7 @@ PoseEstimator::Estimator PoseEstimator::Make(const PoseEstimatorOptions& options
                                              double resolution, double jerk_density) {
   switch (options.kind) {
     case EstimatorKind::kKalman:
-      return KalmanEstimator(period, resolution, jerk_density);
+      return KalmanEstimator<>(period, resolution, jerk_density);
     case EstimatorKind::kQuadraticFit:
       return QuadraticFit(period, options.window);
     case EstimatorKind::kFiniteDifferences:

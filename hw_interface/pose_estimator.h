@@ -34,7 +34,8 @@ class PoseEstimator {
   const Vector6d& A() const noexcept { return A_; }  ///< [a; alpha]
 
  private:
-  using Estimator = std::variant<KalmanEstimator, QuadraticFit, FiniteDifferences, AdaptiveWindow>;
+  using Estimator =
+      std::variant<KalmanEstimator<>, QuadraticFit, FiniteDifferences, AdaptiveWindow>;
   static Estimator Make(const PoseEstimatorOptions& options, double period, double resolution,
                         double jerk_density);
 

@@ -47,6 +47,11 @@ Vector3d Logarithm(const Matrix3d& R) {
   return 2 * std::atan2(sine, turn.w()) / sine * turn.vec();
 }
 
+/// By a call of its own, which leaves the registers to the short ones.
+[[gnu::noinline]] Four LongTurn(const Axes& G, const Axes& H) {
+  return FourOf(Logarithm(RotationOf(H) * RotationOf(G).transpose()));
+}
+
 /// k(theta) = 1/theta^2 - cot(theta/2)/(2 theta) of Jr^-1 = 1 + [e]/2 + k [e]^2, and its slope
 /// k'(theta)/theta.
 struct JacobianCoefficient {
@@ -97,14 +102,18 @@ RodriguesCoefficients RodriguesAt(double x2) {
 }  // namespace
 
 Vector6d HandError(const Posed& X_WG, const Posed& X_WH) {
-  const Axes G = AxesOf(X_WG), H = AxesOf(X_WH);
+  return Vector6Of(HandError(AxesOf(X_WG), AxesOf(X_WH)));
+}
+
+Screw HandError(const Axes& G, const Axes& H) noexcept {
   // Trace and skew part of R_WH R_WG' = sum h g', which is not written down for a short turn.
   const Four traces = G.x * H.x + G.y * H.y + G.z * H.z;
   const double y = 0.25 * (3 - (traces[0] + traces[1] + traces[2]));
-  const Four turn = y <= kShortTurn ? 0.5 * AngleOverSine(y) *
-                                          (Cross(G.x, H.x) + Cross(G.y, H.y) + Cross(G.z, H.z))
-                                    : FourOf(Logarithm(X_WH.R * X_WG.R.transpose()));
-  return Stacked<double>(X_WH.p - X_WG.p, Vector3Of(turn));
+  if (y <= kShortTurn) {
+    const Four skew = Cross(G.x, H.x) + Cross(G.y, H.y) + Cross(G.z, H.z);
+    return {H.p - G.p, 0.5 * AngleOverSine(y) * skew};
+  }
+  return {H.p - G.p, LongTurn(G, H)};
 }
 
 Posed Displaced(const Posed& X, const Vector6d& way) noexcept {

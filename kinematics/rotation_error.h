@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vmech/kinematics/screw.h"
 #include "vmech/mechanisms/pose.h"
 
 namespace vmech {
@@ -15,6 +16,7 @@ enum class RotationError {
 
 /// e1 [6; m, rad]: displacement and logarithm of the rotation that lead from G to H, world axes.
 Vector6d HandError(const Posed& X_WG, const Posed& X_WH);
+Screw HandError(const Axes& X_WG, const Axes& X_WH) noexcept;
 
 /// Its inverse: the pose to which `way` [dp; dr] leads from X, HandError(X, Displaced(X, way)) =
 /// way for turns below half a turn.

@@ -14,7 +14,7 @@ struct Axes {
 };
 
 /// A twist: the velocity of what passes Wo, and the angular velocity. Or a wrench: the force, and
-/// its moment about Wo.
+/// its moment about Wo. Or either about another point, if its description says so.
 struct Screw {
   Four linear{}, angular{};
 };

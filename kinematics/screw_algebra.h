@@ -40,6 +40,9 @@ inline Four Turned(const Axes& X, double a0, double a1, double a2) noexcept {
 inline Four Turned(const Axes& X, const Vector3d& a) noexcept {
   return Turned(X, a[0], a[1], a[2]);
 }
+inline Four Turned(const Axes& X, const Four& a) noexcept {
+  return Turned(X, a[0], a[1], a[2]);
+}
 /// R'a.
 inline Four TurnedBack(const Axes& X, const Four& a) noexcept {
   const Four x = X.x * a, y = X.y * a, z = X.z * a, zero{};
@@ -58,6 +61,9 @@ inline Four PointInWorld(const Axes& X, const Vector3d& p) noexcept {
   return X.p + Turned(X, p);
 }
 /// X_WB X_BC.
+inline Axes operator*(const Axes& X, const Axes& Y) noexcept {
+  return {Turned(X, Y.x), Turned(X, Y.y), Turned(X, Y.z), X.p + Turned(X, Y.p)};
+}
 inline Axes operator*(const Axes& X, const Posed& Y) noexcept {
   return Turned(X, Y.R, PointInWorld(X, Y.p));
 }
@@ -85,6 +91,13 @@ inline Posed PoseOf(const Axes& X) noexcept {
   return {RotationOf(X), Vector3Of(X.p)};
 }
 
+inline Screw ScrewOf(const Vector6d& a) noexcept {
+  return {FirstThree(Four{a[0], a[1], a[2], a[2]}), FirstThree(Four{a[3], a[4], a[5], a[5]})};
+}
+inline Vector6d Vector6Of(const Screw& a) noexcept {
+  return {a.linear[0], a.linear[1], a.linear[2], a.angular[0], a.angular[1], a.angular[2]};
+}
+
 inline Screw& operator+=(Screw& a, const Screw& b) noexcept {
   a.linear += b.linear;
   a.angular += b.angular;
@@ -103,6 +116,11 @@ inline Screw operator-(const Screw& a, const Screw& b) noexcept {
 }
 inline Screw operator*(double s, const Screw& a) noexcept {
   return {s * a.linear, s * a.angular};
+}
+
+/// Entry by entry: diag(gains) a.
+inline Screw Scaled(const Screw& gains, const Screw& a) noexcept {
+  return {gains.linear * a.linear, gains.angular * a.angular};
 }
 
 /// The power of a wrench on a twist.

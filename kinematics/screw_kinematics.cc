@@ -1,5 +1,7 @@
 #include "vmech/kinematics/screw_kinematics.h"
 
+#include <algorithm>
+
 #include "vmech/kinematics/forward_kinematics.h"
 #include "vmech/kinematics/loops.h"
 #include "vmech/kinematics/screw_algebra.h"
@@ -7,10 +9,9 @@
 namespace vmech {
 namespace {
 
-void TurnAboutZ(double sine, double cosine, Axes* X) {
-  const Four x = X->x;
-  X->x = cosine * x + sine * X->y;
-  X->y = cosine * X->y - sine * x;
+/// X Rz.
+Axes TurnedAboutZ(const Axes& X, double sine, double cosine) {
+  return {cosine * X.x + sine * X.y, cosine * X.y - sine * X.x, X.z, X.p};
 }
 
 /// Of a node in its parent, at the joints' rates v.
@@ -78,7 +79,9 @@ ScrewWorkspace::ScrewWorkspace(const KinematicTree& tree)
       S(tree.nv),
       loops(tree.loops.size()),
       sine(tree.nq),
-      cosine(tree.nq) {}
+      cosine(tree.nq) {
+  for (size_t i = 0; i < tree.nodes.size(); ++i) nodes[i + 1].X_PF = AxesOf(tree.nodes[i].X_PF);
+}
 
 void ForwardKinematics(const KinematicTree& tree, const double* q, ScrewWorkspace* ws) noexcept {
   Sines(tree, q, ws->sine.data(), ws->cosine.data());
@@ -86,22 +89,26 @@ void ForwardKinematics(const KinematicTree& tree, const double* q, ScrewWorkspac
   for (int i = 0; i < static_cast<int>(tree.nodes.size()); ++i) {
     const TreeNode& node = tree.nodes[i];
     if (node.parent != i - 1) X = ws->at(node.parent).X;  // else in registers
-    X = X * node.X_PF;
+    const Axes& X_PF = ws->at(i).X_PF;
+    // What does not depend on the parent first: a chain waits for each of its nodes.
     switch (node.motion) {
       case NodeMotion::kFixed:
+        X = X * X_PF;
         break;
       case NodeMotion::kRevolute:
-        TurnAboutZ(ws->sine[node.q], ws->cosine[node.q], &X);
+        X = X * TurnedAboutZ(X_PF, ws->sine[node.q], ws->cosine[node.q]);
         break;
       case NodeMotion::kPrismatic:
+        X = X * X_PF;
         X.p += q[node.q] * X.z;
         break;
       case NodeMotion::kScrew:
+        X = X * TurnedAboutZ(X_PF, ws->sine[node.q], ws->cosine[node.q]);
         X.p += (node.pitch * q[node.q]) * X.z;
-        TurnAboutZ(ws->sine[node.q], ws->cosine[node.q], &X);
         break;
       case NodeMotion::kSpherical: {
         const Matrix3d R_FM = RotationOf(q + node.q);
+        X = X * X_PF;
         X = Turned(X, node.reversed ? Matrix3d(R_FM.transpose()) : R_FM, X.p);
         break;
       }
@@ -169,15 +176,19 @@ void ForwardAccelerations(const KinematicTree& tree, const double* vdot,
 }
 
 void PointJacobian(const KinematicTree& tree, const ScrewWorkspace& ws, int node, const Four& p_WQ,
-                   Matrix6Xd* J) noexcept {
-  J->setZero();
+                   std::vector<Screw>* J) noexcept {
+  std::fill(J->begin(), J->end(), Screw{});
   for (int n = node; n >= 0; n = tree.nodes[n].parent) {
     const TreeNode& carrier = tree.nodes[n];
     for (int v = carrier.v; v < carrier.v + VelocitiesOf(carrier.motion); ++v) {
       const Screw& S = ws.S[v];
-      J->col(v) = Stacked<double>(Vector3Of(VelocityAt(p_WQ, S)), Vector3Of(S.angular));
+      (*J)[v] = {VelocityAt(p_WQ, S), S.angular};
     }
   }
+}
+
+void FillMatrix(const std::vector<Screw>& columns, Matrix6Xd* J) noexcept {
+  for (size_t v = 0; v < columns.size(); ++v) J->col(v) = Vector6Of(columns[v]);
 }
 
 void LoopErrors(const KinematicTree& tree, ScrewWorkspace* ws) noexcept {

@@ -25,12 +25,13 @@ struct ScrewWorkspace {
 
   /// Node i is at i + 1; the ground comes first.
   struct Node {
-    Axes X;   ///< X_WB
-    Screw V;  ///< twist
-    Screw c;  ///< velocity product: what A would be if the parent's A and v' were zero
-    Screw A;  ///< rate of V; the ground's is the caller's, who lets it fall upwards for gravity
-    Screw p;  ///< velocity product: what F would be if A were zero
-    Screw F;  ///< what the parent exerts on this node
+    Axes X_PF;  ///< of the tree
+    Axes X;     ///< X_WB
+    Screw V;    ///< twist
+    Screw c;    ///< velocity product: what A would be if the parent's A and v' were zero
+    Screw A;    ///< rate of V; the ground's is the caller's, who lets it fall upwards for gravity
+    Screw p;    ///< velocity product: what F would be if A were zero
+    Screw F;    ///< what the parent exerts on this node
   };
   std::vector<Node> nodes;
   std::vector<Screw> S;  ///< twist of each unit velocity [nv]
@@ -53,9 +54,12 @@ void VelocityProducts(const KinematicTree& tree, ScrewWorkspace* ws) noexcept;
 void ForwardAccelerations(const KinematicTree& tree, const double* vdot,
                           ScrewWorkspace* ws) noexcept;
 
-/// Geometric Jacobian J [6, nv] of a point Q that moves with a node, V_WQ = J v, [v; w]. Needs S.
+/// Geometric Jacobian J of a point Q that moves with a node, V_WQ = J v: its columns [nv] are
+/// twists about Q. Needs S.
 void PointJacobian(const KinematicTree& tree, const ScrewWorkspace& ws, int node, const Four& p_WQ,
-                   Matrix6Xd* J) noexcept;
+                   std::vector<Screw>* J) noexcept;
+/// The same as a matrix [6, nv], [v; w].
+void FillMatrix(const std::vector<Screw>& columns, Matrix6Xd* J) noexcept;
 
 /// Loop errors. Needs X; writes `state` and F.
 void LoopErrors(const KinematicTree& tree, ScrewWorkspace* ws) noexcept;

@@ -160,7 +160,7 @@ int main(int argc, char** argv) {
     const double count = 2 * std::numbers::pi / std::ldexp(1, bits);
     for (plot::Series& series : noise.series) series.x.push_back(bits);
     noise.series[0].y.push_back(AccelerationError(FiniteDifferences(kPeriod), bits));
-    noise.series[1].y.push_back(AccelerationError(KalmanEstimator(kPeriod, count), bits));
+    noise.series[1].y.push_back(AccelerationError(KalmanEstimator<>(kPeriod, count), bits));
     noise.series[2].y.push_back(AccelerationError(QuadraticFit(kPeriod, 20), bits));
     if (bits != 16) continue;
     differences = noise.series[0].y.back();

@@ -11,21 +11,21 @@ namespace {
 
 constexpr int kSolves = 3;
 
-// Kernels with sizes as in small_ldlt.h. Rows are whole registers.
+// Kernels with sizes as in small_ldlt.h, and so are the rows: whole registers.
 
 /// G = w B'B, B [rows, n], both triangles.
-template <int kSize>
+template <int kSize, int kRows>
 void Gram(double w, const double* B, int rows, int size, double* G) noexcept {
-  const int n = kSize > 0 ? kSize : size;
+  const int n = kSize > 0 ? kSize : size, m = kRows > 0 ? kRows : rows;
   for (int j = 0; j < n; ++j) {
-    const double* B_j = B + j * rows;
-    const double square = G[j * n + j] = w * DotOfFours(B_j, B_j, rows);
+    const double* B_j = B + j * m;
+    const double square = G[j * n + j] = w * DotOfFours(B_j, B_j, m);
     if (kSize == 0 && square == 0) {
       for (int i = j + 1; i < n; ++i) G[j * n + i] = G[i * n + j] = 0;
       continue;
     }
     for (int i = j + 1; i < n; ++i) {
-      G[j * n + i] = G[i * n + j] = w * DotOfFours(B + i * rows, B_j, rows);
+      G[j * n + i] = G[i * n + j] = w * DotOfFours(B + i * m, B_j, m);
     }
   }
 }
@@ -46,11 +46,11 @@ void AddProduct(const double* A, const double* x, int n, double* y) noexcept {
 }
 
 /// y = b + w C'd.
-template <int kSize>
+template <int kSize, int kRows>
 void AddTransposed(double w, const double* C, int rows, const double* d, const double* b, int size,
                    double* y) noexcept {
-  const int n = kSize > 0 ? kSize : size;
-  for (int j = 0; j < n; ++j) y[j] = b[j] + w * DotOfFours(C + j * rows, d, rows);
+  const int n = kSize > 0 ? kSize : size, m = kRows > 0 ? kRows : rows;
+  for (int j = 0; j < n; ++j) y[j] = b[j] + w * DotOfFours(C + j * m, d, m);
 }
 
 /// The solves. The multipliers act as forces C'mu = b - A x, so that C is needed only in the end:
@@ -87,26 +87,31 @@ void Iterate(const double* L, const double* A, const double* b, const double* ri
 }  // namespace
 
 struct SaddleSystem::Kernels {
-  decltype(&vmech::Gram<0>) gram;
+  decltype(&vmech::Gram<0, 0>) gram, gram_of_eight;
   decltype(&FactorLdlt<0>) factor;
   decltype(&SolveLdlt<0>) solve;
-  decltype(&AddTransposed<0>) add_transposed;
+  decltype(&AddTransposed<0, 0>) add_transposed;
   decltype(&Iterate<0>) iterate;
 
-  template <int kSize>
+  template <int kSize, int kRows>
   static constexpr Kernels Of() {
-    return {vmech::Gram<kSize>, FactorLdlt<kSize>, SolveLdlt<kSize>, AddTransposed<kSize>,
-            Iterate<kSize>};
+    return {vmech::Gram<kSize, kRows>, vmech::Gram<kSize, 8>,       FactorLdlt<kSize>,
+            SolveLdlt<kSize>,          AddTransposed<kSize, kRows>, Iterate<kSize>};
   }
+  template <int kRows>
   static const Kernels& ForSize(int size) noexcept {
-    static constexpr Kernels kKernels[] = {Of<0>(), Of<1>(), Of<2>(), Of<3>(), Of<4>(),
-                                           Of<5>(), Of<6>(), Of<7>(), Of<8>()};
+    static constexpr Kernels kKernels[] = {Of<0, kRows>(), Of<1, kRows>(), Of<2, kRows>(),
+                                           Of<3, kRows>(), Of<4, kRows>(), Of<5, kRows>(),
+                                           Of<6, kRows>(), Of<7, kRows>(), Of<8, kRows>()};
     return kKernels[size < static_cast<int>(std::size(kKernels)) ? size : 0];
+  }
+  static const Kernels& For(int size, int rows) noexcept {
+    return rows == 4 ? ForSize<4>(size) : rows == 8 ? ForSize<8>(size) : ForSize<0>(size);
   }
 };
 
 SaddleSystem::SaddleSystem(int unknowns, int equations)
-    : kernels_(Kernels::ForSize(unknowns)),
+    : kernels_(Kernels::For(unknowns, equations)),
       equations_(equations),
       G_(MatrixXd::Zero(unknowns, unknowns)),
       L_(G_),
@@ -154,7 +159,8 @@ void SaddleSystem::Approach(const MatrixXd& C, const VectorXd& b, const VectorXd
 }
 
 void SaddleSystem::Gram(const MatrixXd& B, MatrixXd* G) const noexcept {
-  kernels_.gram(1, B.data(), static_cast<int>(B.rows()), size(), G->data());
+  assert(B.rows() == 8);
+  kernels_.gram_of_eight(1, B.data(), 8, size(), G->data());
 }
 
 }  // namespace vmech

@@ -84,8 +84,10 @@ TEST_P(EveryTreeInScrews, HasTheSameJacobians) {
   const Vector3d p_WQ(0.1, -0.2, 0.3);
   for (size_t i = 0; i < tree_.nodes.size(); ++i) {
     const int node = static_cast<int>(i);
+    std::vector<Screw> columns(tree_.nv);
     Matrix6Xd J(6, tree_.nv), expected(6, tree_.nv);
-    PointJacobian(tree_, ws_, node, FourOf(p_WQ), &J);
+    PointJacobian(tree_, ws_, node, FourOf(p_WQ), &columns);
+    FillMatrix(columns, &J);
     PointJacobian(tree_, reference_, node, p_WQ, &expected);
     EXPECT_LE((J - expected).norm(), kIdentity * expected.norm());
   }
@@ -113,9 +115,8 @@ TEST_P(EveryTreeInScrews, HasTheSameForces) {
   SetPose(SomePose());
   SetMotion(v_, vdot_.data());
   GyroscopicWrenches(tree_, inertias_, &ws_);
-  NewtonEuler(tree_, inertias_, &ws_);
   VectorXd tau(tree_.nv), expected(tree_.nv);
-  GeneralisedForces(tree_, ws_, tau.data());
+  NewtonEuler(tree_, inertias_, &ws_, tau.data());
   const std::vector<Wrenchd> none(tree_.nodes.size());
   RecursiveNewtonEuler<double>(tree_, tree_.mechanism.gravity_W, none.data(), &reference_);
   GeneralisedForces(tree_, reference_, expected.data());
@@ -137,9 +138,7 @@ TEST_P(EveryTreeInScrews, HasTheSameMassMatrixAndMomenta) {
   const MatrixXd expected = MassMatrix(tree_, q);
   EXPECT_LE((M - expected).norm(), kIdentity * expected.norm());
   VectorXd momenta(tree_.nv);
-  ForwardVelocities(tree_, v_.data(), &ws_);
-  Momenta(tree_, &ws_);
-  GeneralisedForces(tree_, ws_, momenta.data());
+  Momenta(tree_, v_.data(), &ws_, momenta.data());
   EXPECT_LE((momenta - expected * v_).norm(), kIdentity * momenta.norm());
   const double energy = 0.5 * v_.dot(expected * v_);
   EXPECT_NEAR(KineticEnergy(tree_, inertias_, ws_), energy, kIdentity * energy);

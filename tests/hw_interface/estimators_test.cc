@@ -61,7 +61,7 @@ TEST(Estimators, FiniteDifferencesLoseTheAccelerationBehind16Bits) {
 }
 
 TEST(Estimators, KalmanFilterKeepsAccelerationWithinAFifth) {
-  const Error error = ErrorBehindEncoder(KalmanEstimator(kPeriod, Count(16)), 16);
+  const Error error = ErrorBehindEncoder(KalmanEstimator<>(kPeriod, Count(16)), 16);
   EXPECT_ABOUT(error.v, 0.7);
   EXPECT_ABOUT(error.a, 20);
 }
@@ -79,7 +79,7 @@ TEST(Estimators, AdaptiveWindowHalvesTheNoiseOfSlowVelocity) {
 
 TEST(Estimators, CoarserEncoderCosts) {
   EXPECT_ABOUT(ErrorBehindEncoder(FiniteDifferences(kPeriod), 13).a, 3917);
-  EXPECT_ABOUT(ErrorBehindEncoder(KalmanEstimator(kPeriod, Count(13)), 13).a, 30);
+  EXPECT_ABOUT(ErrorBehindEncoder(KalmanEstimator<>(kPeriod, Count(13)), 13).a, 30);
   EXPECT_ABOUT(ErrorBehindEncoder(QuadraticFit(kPeriod, 20), 13).a, 28);
   EXPECT_ABOUT(ErrorBehindEncoder(AdaptiveWindow(kPeriod, Count(13) / 2), 13).v, 5.1);
 }
@@ -98,7 +98,7 @@ MotionEstimate OfParabola(Estimator estimator) {
 TEST(Estimators, KnowAParabolaExactly) {
   constexpr double kRounding = 1e-6;  // of x near 6 over T^2, divided by the window
   const MotionEstimate fit = OfParabola(QuadraticFit(kPeriod, 20));
-  const MotionEstimate kalman = OfParabola(KalmanEstimator(kPeriod, Count(16)));
+  const MotionEstimate kalman = OfParabola(KalmanEstimator<>(kPeriod, Count(16)));
   for (const MotionEstimate& e : {fit, kalman}) {
     EXPECT_NEAR(e.x, 5.7, kRounding);
     EXPECT_NEAR(e.v, 8, kRounding);
@@ -130,7 +130,7 @@ TEST(AdaptiveWindow, FollowsAnImpactAtOnce) {
 
 TEST(KalmanEstimator, GainsSolveTheRiccatiEquation) {
   // The filter's poles lie within the unit circle: an error in the state dies out.
-  KalmanEstimator estimator(kPeriod, Count(16));
+  KalmanEstimator<> estimator(kPeriod, Count(16));
   estimator.Update(1);
   MotionEstimate e;
   for (int k = 0; k < 1000; ++k) e = estimator.Update(0);
@@ -140,7 +140,7 @@ TEST(KalmanEstimator, GainsSolveTheRiccatiEquation) {
 }
 
 TEST(Estimators, StartAtRestAfterAReset) {
-  KalmanEstimator estimator(kPeriod, Count(16));
+  KalmanEstimator<> estimator(kPeriod, Count(16));
   for (int k = 0; k < 10; ++k) estimator.Update(k);
   estimator.Reset();
   const MotionEstimate e = estimator.Update(5);

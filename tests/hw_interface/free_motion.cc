@@ -51,7 +51,8 @@ FreeMotion::FreeMotion(const KinematicTree& tree, const GraspFrame& grasp, const
     for (int i = 0; i <= steps; ++i) {
       const int row = steps + side * i;
       way[row] = side * i * kStep;
-      frames[row] = pose.Set(here);
+      pose.Set(here);
+      frames[row] = pose.X_WG();
       inertia[row] = tangent.dot(MassMatrix(tree, here) * tangent);
       // The midpoint rule; the pose stays on the track, s is good to 1e-6 of it.
       VectorXd middle = here;

@@ -67,9 +67,8 @@ const MasterState& HeldTick::NextSample() {
   if (next_ == samples_.size() - 1) forward_ = false;
   if (next_ == 0) forward_ = true;
   next_ += forward_ ? 1 : -1;
-  state_ = samples_[next_];
-  state_.sequence = ++sequence_;
-  return state_;
+  samples_[next_].sequence = ++sequence_;
+  return samples_[next_];
 }
 
 void HeldTick::Full() noexcept VMECH_NONBLOCKING {

@@ -46,7 +46,6 @@ class HeldTick {
   std::vector<MasterState> samples_;
   size_t next_ = 0;
   bool forward_ = true;
-  MasterState state_;
   std::uint64_t sequence_ = 0;
   std::unique_ptr<KinematicTree> tree_;
   std::unique_ptr<HandObserver> observer_;
