@@ -98,7 +98,7 @@ CoupledDynamics::CoupledDynamics(const KinematicTree& tree, const GraspFrame& gr
   RefuseUnrenderedFriction(tree);
   ListFreedoms();
   pose_.Set(q);
-  H_ = pose_.grasp_axes();
+  hand_.X = pose_.grasp_axes();
   TakeInertia();
   TakeVelocities();
   BiasForces();
@@ -134,8 +134,11 @@ void CoupledDynamics::TakeHold(const GraspFrame& grasp) noexcept {
 }
 
 CoupledStatus CoupledDynamics::Step(const Posed& X_WH, const Vector6d& V_WH) noexcept {
-  H_ = AxesOf(X_WH);
-  V_WH_ = ScrewOf(V_WH);
+  return Step({AxesOf(X_WH), ScrewOf(V_WH)});
+}
+
+CoupledStatus CoupledDynamics::Step(const MovingFrame& hand) noexcept {
+  hand_ = hand;
   TakeError();
   const double before = Energy();
   BiasForces();
@@ -184,7 +187,7 @@ void CoupledDynamics::AddCoupling() noexcept {
   pose_.TakeWeightedJacobian(coupling_.root_gain, &rootKJ_);
   system_.Gram(rootKJ_, &held_A_);
   held_A_ += A_;
-  pose_.AddForces(Scaled(coupling_.stiffness, e1_) + Scaled(coupling_.damping, V_WH_),
+  pose_.AddForces(Scaled(coupling_.stiffness, e1_) + Scaled(coupling_.damping, hand_.V),
                   &held_right_);
 }
 
@@ -196,7 +199,7 @@ bool CoupledDynamics::Slip() noexcept {
     return slipping_ = false;
   }
   const Screw V_WG = pose_.Twist(next_v_);
-  w_ = Scaled(coupling_.stiffness, e1_ - T_ * V_WG) + Scaled(coupling_.damping, V_WH_ - V_WG);
+  w_ = Scaled(coupling_.stiffness, e1_ - T_ * V_WG) + Scaled(coupling_.damping, hand_.V - V_WG);
   const bool force_slips = Shorten(coupling_.max_force, &w_.linear);
   const bool moment_slips = Shorten(coupling_.max_moment, &w_.angular);
   return slipping_ = force_slips || moment_slips;
@@ -351,7 +354,7 @@ void CoupledDynamics::TakeVelocities() noexcept {
 void CoupledDynamics::KeepEnergy(double before) noexcept {
   constexpr double kMemory = 0.05;  // of the kinetic energy that losses are remembered for
   const Screw V = pose_.Twist(v_);
-  const double dragged = T_ * Power(Scaled(coupling_.damping, V_WH_ - V), V);
+  const double dragged = T_ * Power(Scaled(coupling_.damping, hand_.V - V), V);
   const double gained = Energy() - before - (coupled_ ? std::max(0.0, dragged) : 0);
   lost_ = std::min(lost_ - gained, kMemory * kinetic_);
   if (lost_ >= 0 || kinetic_ == 0) return;
@@ -362,7 +365,7 @@ void CoupledDynamics::KeepEnergy(double before) noexcept {
 
 /// e1, and the energy of the coupling.
 void CoupledDynamics::TakeError() noexcept {
-  e1_ = HandError(pose_.grasp_axes(), H_);
+  e1_ = HandError(pose_.grasp_axes(), hand_.X);
   if (!coupled_) return;
   const Screw pull = Scaled(coupling_.stiffness, e1_);
   spring_ = SpringEnergy(e1_.linear, pull.linear, coupling_.max_force) +

@@ -58,6 +58,7 @@ class CoupledDynamics {
   }
   /// A step with the hand at X_WH, moving with V_WH [v; w] at Ho, world axes.
   [[nodiscard]] CoupledStatus Step(const Posed& X_WH, const Vector6d& V_WH) noexcept;
+  [[nodiscard]] CoupledStatus Step(const MovingFrame& hand) noexcept;
 
   // After the last step.
   const VectorXd& q() const noexcept { return q_; }
@@ -65,10 +66,12 @@ class CoupledDynamics {
   Posed X_WG() const noexcept { return pose_.X_WG(); }
   /// HandError of the hand [6; m, rad].
   Vector6d e1() const noexcept;
+  const Screw& stretch() const noexcept { return e1_; }  ///< the same
   const HeldPose& pose() const noexcept { return pose_; }
   Vector6d V_WG() const noexcept;  ///< of Go, world axes [v; w]
   /// Hand on mechanism during the step, at Go, world axes: what the coupling pulls.
   Vector6d w() const noexcept;
+  const Screw& pull() const noexcept { return w_; }  ///< the same
   /// Every joint's wrench during the step, as HandDynamics::joints.
   const std::vector<Wrenchd>& joints() const noexcept { return joints_; }
   /// Kinetic energy, weight, springs of joints and coupling [J].
@@ -126,8 +129,8 @@ class CoupledDynamics {
 
   std::vector<Wrenchd> joints_;
   std::vector<Freedom> freedoms_;
-  Axes H_;               // of the hand
-  Screw e1_, V_WH_, w_;  // about Ho or Go
+  MovingFrame hand_;
+  Screw e1_, w_;
   double closure_ = 0;
   double kinetic_ = 0, potential_ = 0;  // without the coupling's [J]
   double spring_ = 0;                   // of the coupling [J]

@@ -52,13 +52,14 @@ void BodyInertias(const KinematicTree& tree, const ScrewWorkspace& ws,
 void CompositeMassMatrix(const KinematicTree& tree, const ScrewWorkspace& ws,
                          ScrewInertias* inertias, MatrixXd* M) noexcept {
   std::fill_n(M->data(), M->size(), 0.0);
-  std::copy(inertias->bodies.begin(), inertias->bodies.end(), inertias->composite.begin());
-  ScrewInertia carried;  // in registers, as in HandOn
+  ScrewInertia sum;  // in registers, as in HandOn
   for (int i = static_cast<int>(tree.nodes.size()); i-- > 0;) {
     const TreeNode& node = tree.nodes[i];
-    carried += inertias->composite[i + 1];
+    sum += inertias->bodies[i + 1];
+    if (inertias->carries[i + 1]) sum += inertias->carried[i + 1];
+    inertias->carries[i + 1] = false;
     for (int v = node.v; v < node.v + VelocitiesOf(node.motion); ++v) {
-      const Screw momentum = carried * ws.S[v];
+      const Screw momentum = sum * ws.S[v];
       for (int j = i; j >= 0; j = tree.nodes[j].parent) {
         const TreeNode& below = tree.nodes[j];
         for (int u = below.v; u < below.v + VelocitiesOf(below.motion); ++u) {
@@ -67,8 +68,11 @@ void CompositeMassMatrix(const KinematicTree& tree, const ScrewWorkspace& ws,
       }
     }
     if (node.parent == i - 1) continue;
-    inertias->composite[node.parent + 1] += carried;
-    carried = {};
+    ScrewInertia& parent = inertias->carried[node.parent + 1];
+    if (!inertias->carries[node.parent + 1]) parent = {};
+    inertias->carries[node.parent + 1] = true;
+    parent += sum;
+    sum = {};
   }
 }
 

@@ -9,12 +9,15 @@ namespace vmech {
 /// The algorithms of newton_euler.h for one pose in screws about Wo, for the tick; joints left
 /// open. What a pass finds stays for the next: inertias hold as long as the pose.
 
-/// Inertia of every node about Wo. `composite` is CompositeMassMatrix's own.
+/// Inertia of every node about Wo, node i at i + 1.
 struct ScrewInertias {
   explicit ScrewInertias(const KinematicTree& tree)
-      : bodies(tree.nodes.size() + 1), composite(bodies) {}
+      : bodies(tree.nodes.size() + 1), carried(bodies), carries(bodies.size()) {}
 
-  std::vector<ScrewInertia> bodies, composite;  ///< node i at i + 1
+  std::vector<ScrewInertia> bodies;
+  // CompositeMassMatrix's own: what other nodes than the next have handed to a node, if any have.
+  std::vector<ScrewInertia> carried;
+  std::vector<char> carries;
 };
 
 /// Weight is a ground that falls upwards: the ground's A, once.

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "vmech/kinematics/rotation_error.h"
+#include "vmech/kinematics/screw_algebra.h"
 #include "vmech/solvers/stopping_rule.h"
 
 namespace vmech {
@@ -60,9 +61,9 @@ CoupledTick::CoupledTick(const KinematicTree& tree, int grasp, const VectorXd& q
       dynamics_(tree, grasp_, AtTheMechanism(options), period, q),
       period_(period),
       fade_(std::exp(-period / kFade)),
-      compliance_((options.coupling.stiffness.array() > 0)
-                      .select(options.coupling.stiffness.cwiseInverse(), 0)),
-      hand_(AtTheMechanism(options), options.grasp_rate / options.scale, period),
+      compliance_(ScrewOf((options.coupling.stiffness.array() > 0)
+                              .select(options.coupling.stiffness.cwiseInverse(), 0))),
+      closing_(AtTheMechanism(options), options.grasp_rate / options.scale, period),
       peaks_(tree.mechanism) {}
 
 std::vector<std::string> CoupledTick::ChannelNames() const {
@@ -87,9 +88,9 @@ bool CoupledTick::TakeHold(const Posed& X_WH) noexcept {
     grasp.X_BG = X_BH;
   }
   dynamics_.TakeHold(grasp);
-  hand_.Open();
+  closing_.Open();
   fading_ += felt_;
-  felt_.setZero();
+  felt_ = {};
   holds_ = true;
   return true;
 }
@@ -97,18 +98,16 @@ bool CoupledTick::TakeHold(const Posed& X_WH) noexcept {
 void CoupledTick::Reset() noexcept {
   dynamics_.TakeHold(grasp_);
   dynamics_.Stop();
-  hand_.Hold();
+  closing_.Hold();
   holds_ = true;
-  felt_.setZero();
-  fading_.setZero();
+  felt_ = fading_ = hand_.V = {};
   has_hand_ = false;
-  V_WH_.setZero();
   peaks_.Reset();
   summary_ = {};
 }
 
 TickOutput CoupledTick::Step(const TickInput& input, std::span<double> channels) noexcept {
-  if (input.fresh || !has_hand_) EstimateTwist(input);
+  if (input.fresh || !has_hand_) TakeHand(input);
   const CoupledStatus status = Move(input);
   TickOutput out;
   if (status == CoupledStatus::kFailed) {
@@ -117,7 +116,7 @@ TickOutput CoupledTick::Step(const TickInput& input, std::span<double> channels)
   }
   out.status = status == CoupledStatus::kStopped ? TickStatus::kHeld : TickStatus::kOk;
   Feel(input.held);
-  out.F_Ho_W = felt_ + fading_;
+  out.F_Ho_W = Vector6Of(felt_ + fading_);
   // What the mechanism does alone is no business of the hand's.
   out.stored_energy = stored_ + FadingEnergy();
   Account(status, channels);
@@ -128,17 +127,19 @@ CoupledStatus CoupledTick::Move(const TickInput& input) noexcept {
   if (!input.held && holds_) {
     dynamics_.LetGo();
     fading_ += felt_;
-    felt_.setZero();
+    felt_ = {};
     holds_ = false;
   }
-  if (holds_ && hand_.closing()) return hand_.Step(X_WH_, V_WH_, &dynamics_);
-  return dynamics_.Step(X_WH_, V_WH_);
+  if (holds_ && closing_.closing()) {
+    return closing_.Step(PoseOf(hand_.X), Vector6Of(hand_.V), &dynamics_);
+  }
+  return dynamics_.Step(hand_);
 }
 
 void CoupledTick::Feel(bool held) noexcept {
   Fade();
   if (held) {
-    felt_ = -options_.scale * dynamics_.w();
+    felt_ = -options_.scale * dynamics_.pull();
     stored_ = options_.scale * dynamics_.Energy();
   }
 }
@@ -148,23 +149,22 @@ void CoupledTick::Feel(bool held) noexcept {
 ///
 ///   E = F'K^-1 F / 2,   (1 + c)/2 F.dX <= (1 - c^2) E   by   c = 1 - F.dX/2E.
 void CoupledTick::Fade() noexcept {
-  const double force = fading_.head<3>().norm(), most = options_.grasp_rate * period_;
+  const double force = Length(fading_.linear), most = options_.grasp_rate * period_;
   double left = fade_;
   if (force * (1 - left) > most) left = 1 - most / force;
-  const double energy = FadingEnergy(), work = period_ * fading_.dot(V_WH_);
+  const double energy = FadingEnergy(), work = period_ * Power(fading_, hand_.V);
   if (work > 0) left *= std::max(0.0, 1 - work / (2 * energy));
-  fading_ *= left;
+  fading_ = left * fading_;
 }
 
 double CoupledTick::FadingEnergy() const noexcept {
-  return 0.5 * fading_.dot(compliance_.cwiseProduct(fading_));
+  return 0.5 * Power(fading_, Scaled(compliance_, fading_));
 }
 
 void CoupledTick::Account(CoupledStatus status, std::span<double> channels) noexcept {
-  const Vector6d& e1 = dynamics_.e1();
-  channels[0] = e1.head<3>().norm();
-  channels[1] = e1.tail<3>().norm();
-  channels[2] = dynamics_.w().head<3>().norm();
+  channels[0] = Length(dynamics_.stretch().linear);
+  channels[1] = Length(dynamics_.stretch().angular);
+  channels[2] = Length(dynamics_.pull().linear);
   channels[3] = static_cast<double>(dynamics_.slipping() + 2 * dynamics_.at_limit() +
                                     4 * (status == CoupledStatus::kStopped));
   peaks_.Add(dynamics_.joints(), channels.subspan(kOwnChannels));
@@ -190,19 +190,19 @@ std::string CoupledTick::FullReport() const {
 }
 
 /// As observed, or differences through a filter of first order.
-void CoupledTick::EstimateTwist(const TickInput& input) noexcept {
+void CoupledTick::TakeHand(const TickInput& input) noexcept {
   if (input.observed) {
-    X_WH_ = input.observed->X_WH;
-    V_WH_ = input.observed->V_WH;
+    hand_ = *input.observed;
     has_hand_ = true;
     return;
   }
+  const Axes X = AxesOf(input.X_WH);
   if (has_hand_) {
     const double elapsed = std::max(input.elapsed, period_);
     const double share = options_.smoothing > 0 ? 1 - std::exp(-elapsed / options_.smoothing) : 1;
-    V_WH_ += share * (HandError(X_WH_, input.X_WH) / elapsed - V_WH_);
+    hand_.V += share * ((1 / elapsed) * HandError(hand_.X, X) - hand_.V);
   }
-  X_WH_ = input.X_WH;
+  hand_.X = X;
   has_hand_ = true;
 }
 

@@ -63,7 +63,7 @@ class CoupledTick : public Tick {
   std::string FullReport() const override;
 
  private:
-  void EstimateTwist(const TickInput& input) noexcept;
+  void TakeHand(const TickInput& input) noexcept;
   CoupledStatus Move(const TickInput& input) noexcept;
   void Feel(bool held) noexcept;
   void Fade() noexcept;
@@ -75,14 +75,13 @@ class CoupledTick : public Tick {
   vmech::GraspFrame grasp_;  // where the hand takes hold by name
   CoupledDynamics dynamics_;
   double period_, fade_;  // fade_: what is left of a fading wrench after a period
-  Vector6d compliance_;   // K^-1, zero where K is
-  ClosingHand hand_;
+  Screw compliance_;      // K^-1, zero where K is
+  ClosingHand closing_;
   bool has_hand_ = false, holds_ = true;
-  Vector6d felt_ = Vector6d::Zero();    // of the mechanism that is held
-  Vector6d fading_ = Vector6d::Zero();  // of one that was
-  double stored_ = 0;                   // when it was last held [J]
-  Posed X_WH_;
-  Vector6d V_WH_ = Vector6d::Zero();
+  Screw felt_;         // of the mechanism that is held
+  Screw fading_;       // of one that was
+  double stored_ = 0;  // when it was last held [J]
+  MovingFrame hand_;
   JointPeaks peaks_;
   CoupledSummary summary_;
 };

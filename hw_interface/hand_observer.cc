@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "vmech/hw_interface/estimators.h"
 #include "vmech/kinematics/rotation_error.h"
+#include "vmech/kinematics/screw_algebra.h"
 #include "vmech/solvers/stopping_rule.h"
 
 namespace vmech {
@@ -16,7 +18,14 @@ constexpr double kMobilityTime = 0.2;              // [s]
 constexpr double kLosing = 0.01, kGaining = 0.05;  // [s]: of trust
 constexpr double kSmoothing = 2e-3;                // [s]
 constexpr double kFinest = 1e-5;                   // [m], [rad]
-constexpr int kMostPeriods = 16;                   // a longer gap counts as this
+
+constexpr double kNoStop = std::numeric_limits<double>::infinity();
+
+/// Into [-most, most].
+Four Clamped(const Four& a, const Four& most) {
+  const Four below = a < most ? a : most;
+  return below > -most ? below : -most;
+}
 
 const DeviceInfo& Checked(const DeviceInfo& info) {
   if (HandObserver::Suits(info)) return info;
@@ -44,8 +53,8 @@ bool HandObserver::Suits(const DeviceInfo& info) {
 HandObserver::HandObserver(const HandObserverOptions& options, const DeviceInfo& info)
     : period_(info.period),
       arm_(Checked(info).arm),
-      lower_(arm_.joints()),
-      upper_(arm_.joints()),
+      lower_(JointArray::Constant(-kNoStop)),
+      upper_(JointArray::Constant(kNoStop)),
       factor_(arm_.joints()),
       yielding_(MatrixXd::Zero(arm_.joints(), 6)) {
   options.Validate();
@@ -56,51 +65,57 @@ HandObserver::HandObserver(const HandObserverOptions& options, const DeviceInfo&
     upper_[node.v] = tree.mechanism.joints[node.joint].upper[node.freedom];
   }
   gain_ = GainsFor(options.bandwidth, period_);
-  resolution_ << Vector3d::Constant(info.linear.resolution),
-      Vector3d::Constant(info.angular.resolution);
-  resolution_ = resolution_.cwiseMax(kFinest);
+  for (int k = 0; k <= kMostPeriods; ++k) new_share_[k] = 1 - std::exp(-k * period_ / kSmoothing);
+  resolution_ = {FourOf(Vector3d::Constant(std::max(info.linear.resolution, kFinest))),
+                 FourOf(Vector3d::Constant(std::max(info.angular.resolution, kFinest)))};
 }
 
 void HandObserver::Update(const MasterState& state, const Vector6d& F_Ho_D, int periods) noexcept {
+  const Axes X = AxesOf(state.X_DH);
   if (!started_) {
-    way_.setZero();
-    x_.setZero();
-    v_.setZero();
-    d_.setZero();
-    X_last_ = state.X_DH;
-    differences_.setZero();
+    way_ = x_ = v_ = d_ = differences_ = {};
+    X_last_ = X;
     until_mobility_ = 0;
     trust_ = 1;
   }
   started_ = true;
   if (until_mobility_-- <= 0) FindMobility(state);
-  const double elapsed = std::clamp(periods, 1, kMostPeriods) * period_;
+  periods = std::clamp(periods, 1, kMostPeriods);
+  const double elapsed = periods * period_;
   const double change = AtStop(state) ? -elapsed / kLosing : elapsed / kGaining;
   trust_ = std::clamp(trust_ + change, 0.0, 1.0);
-  const Vector6d step = HandError(X_last_, state.X_DH);
+  const Screw step = HandError(X_last_, X);
   way_ += step;
-  X_last_ = state.X_DH;
-  differences_ += (1 - std::exp(-elapsed / kSmoothing)) * (step / elapsed - differences_);
-  const Vector6d own = kLighter * (mobility_ * F_Ho_D);
-  for (int k = std::clamp(periods, 1, kMostPeriods); k > 0; --k) {
-    const Vector6d a = own + d_;
-    x_ += period_ * (v_ + 0.5 * period_ * a);
+  X_last_ = X;
+  differences_ += new_share_[periods] * ((1 / elapsed) * step - differences_);
+  Screw a = d_;
+  for (int i = 0; i < 6; ++i) a += F_Ho_D[i] * mobility_[i];
+  for (int k = periods; k > 0; --k) {
+    x_ += period_ * (v_ + (0.5 * period_) * a);
     v_ += period_ * a;
   }
-  const Vector6d innovation = way_ - x_;
+  const Screw innovation = way_ - x_;
   x_ += gain_[0] * innovation;
   v_ += gain_[1] * innovation;
   d_ += gain_[2] * innovation;
-  x_ = way_ + (x_ - way_).cwiseMax(-resolution_).cwiseMin(resolution_);
-  X_DH_ = Displaced(state.X_DH, trust_ * (x_ - way_));
-  V_DH_ = trust_ * v_ + (1 - trust_) * differences_;
+  const Screw ahead = x_ - way_;
+  const Screw within{Clamped(ahead.linear, resolution_.linear),
+                     Clamped(ahead.angular, resolution_.angular)};
+  x_ = way_ + within;
+  hand_ = {Displaced(X, trust_ * within), trust_ * v_ + (1 - trust_) * differences_};
+}
+
+Posed HandObserver::X_DH() const noexcept {
+  return PoseOf(hand_.X);
+}
+
+Vector6d HandObserver::V_DH() const noexcept {
+  return Vector6Of(hand_.V);
 }
 
 bool HandObserver::AtStop(const MasterState& state) const noexcept {
-  for (int i = 0; i < arm_.joints(); ++i) {
-    if (state.q[i] > upper_[i] || state.q[i] < lower_[i]) return true;
-  }
-  return false;
+  const auto q = Eigen::Map<const JointArray>(state.q.data());
+  return (q - upper_).max(lower_ - q).maxCoeff() > 0;
 }
 
 /// Y at the measured posture; none where the model has no inverse.
@@ -110,8 +125,9 @@ void HandObserver::FindMobility(const MasterState& state) noexcept {
   factor_.compute(arm_.MassMatrix());
   yielding_ = arm_.J().transpose();
   factor_.solveInPlace(yielding_);
-  mobility_ = arm_.J().lazyProduct(yielding_);
-  if (factor_.info() != Eigen::Success || !mobility_.allFinite()) mobility_.setZero();
+  const Matrix6d Y = arm_.J().lazyProduct(yielding_);
+  const bool sound = factor_.info() == Eigen::Success && Y.allFinite();
+  for (int i = 0; i < 6; ++i) mobility_[i] = sound ? kLighter * ScrewOf(Y.col(i)) : Screw{};
 }
 
 }  // namespace vmech

@@ -44,28 +44,33 @@ class HandObserver {
   /// stop, of which the model knows nothing, it goes to zero: the samples as they are, and their
   /// differences.
   double trust() const noexcept { return trust_; }
-  const Posed& X_DH() const noexcept { return X_DH_; }
-  const Vector6d& V_DH() const noexcept { return V_DH_; }  ///< [v; w] of Ho and H, axes of D
+  const MovingFrame& hand_D() const noexcept { return hand_; }  ///< the handle in D
+  Posed X_DH() const noexcept;                                  ///< its pose there
+  Vector6d V_DH() const noexcept;                               ///< [v; w] of Ho and H, axes of D
 
  private:
+  static constexpr int kMostPeriods = 16;  // a longer gap counts as this
+
   void FindMobility(const MasterState& state) noexcept;
   bool AtStop(const MasterState& state) const noexcept;
 
   double period_;
   std::array<double, 3> gain_;
+  std::array<double, kMostPeriods + 1> new_share_;  // of a difference over so many periods
   ArmModel arm_;
-  VectorXd lower_, upper_;  // stops of the joints
+  JointArray lower_, upper_;  // stops of the joints
   Eigen::LLT<MatrixXd> factor_;
-  MatrixXd yielding_;  // M^-1 J' [joints, 6]
-  Matrix6d mobility_ = Matrix6d::Zero();
-  int until_mobility_ = 0;  // samples
+  MatrixXd yielding_;              // M^-1 J' [joints, 6]
+  std::array<Screw, 6> mobility_;  // c Y, column by column
+  int until_mobility_ = 0;         // samples
   double trust_ = 1;
-  Vector6d resolution_;  // the filter's pose is never further off than this
+  Screw resolution_;  // the filter's pose is never further off than this
   bool started_ = false;
-  Posed X_last_, X_DH_;
-  Vector6d way_ = Vector6d::Zero();  // measured since the start, rotations summed up
-  Vector6d x_ = way_, v_ = way_, d_ = way_;
-  Vector6d differences_ = way_, V_DH_ = way_;
+  Axes X_last_;
+  Screw way_;  // measured since the start, rotations summed up
+  Screw x_, v_, d_;
+  Screw differences_;
+  MovingFrame hand_;
 };
 
 }  // namespace vmech

@@ -124,7 +124,7 @@ TickOutput Runner::StepTick(IoStatus io, TickRecord* record) noexcept VMECH_NONB
     last_sequence_ = state_.sequence;
     registered_ = true;
   }
-  ObservedHand observed;
+  MovingFrame observed;
   if (fresh_) {
     Observe();
     GraspOrLetGo();
@@ -136,7 +136,7 @@ TickOutput Runner::StepTick(IoStatus io, TickRecord* record) noexcept VMECH_NONB
   input.elapsed = static_cast<double>(state_.sequence - last_sequence_) * period_;
   input.state = &state_;
   if (observer_) {
-    observed = registration_.Observed(observer_->X_DH(), observer_->V_DH());
+    registration_.TakeHandInWorld(observer_->hand_D(), &observed);
     input.observed = &observed;
   }
   last_sequence_ = state_.sequence;
@@ -148,11 +148,9 @@ TickOutput Runner::StepTick(IoStatus io, TickRecord* record) noexcept VMECH_NONB
 }
 
 void Runner::Observe() noexcept {
-  X_DH_ = state_.X_DH;
   if (!observer_) return;
   const auto periods = static_cast<int>(state_.sequence - last_sequence_);
   observer_->Update(state_, safety_.WrenchAtWork(state_), periods);
-  X_DH_ = observer_->X_DH();
 }
 
 /// Puts the hand where the grasp frame is.
@@ -172,7 +170,8 @@ void Runner::GraspOrLetGo() noexcept {
   safety_.Rebase();
   if (!closes) return;
   ++summary_.grasps;
-  if (!tick_->TakeHold(registration_.HandInWorld(X_DH_))) {
+  const Posed X_DH = observer_ ? observer_->X_DH() : state_.X_DH;
+  if (!tick_->TakeHold(registration_.HandInWorld(X_DH))) {
     safety_.Restart();
     registration_ = GraspedAt(options_.R_WD, state_.X_DH, tick_->GraspFrame());
     tick_->Reset();

@@ -121,7 +121,6 @@ class Runner {
   std::unique_ptr<HandObserver> observer_;
   Registration registration_;
   MasterState state_;
-  Posed X_DH_;  // of the hand, observed or as measured
   std::vector<std::string> channels_;
   std::vector<TickRecord> kept_;  // a ring
   RunSummary summary_;

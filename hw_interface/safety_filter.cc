@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "vmech/kinematics/rotation_error.h"
+#include "vmech/kinematics/screw_algebra.h"
 #include "vmech/solvers/stopping_rule.h"
 
 namespace vmech {
@@ -133,8 +134,9 @@ void SafetyFilter::Observe(const SafetyInput& input) noexcept {
   const MasterState& state = *input.state;
   if (!open_) has_pose_ = false;
   if (has_pose_ && state.sequence == last_sequence_) return;
+  const Axes X = AxesOf(state.X_DH);
   if (has_pose_) {
-    const Vector6d dX = HandError(X_last_, state.X_DH);
+    const Vector6d dX = Vector6Of(HandError(X_last_, X));
     const double elapsed = static_cast<double>(state.sequence - last_sequence_) * period_;
     // This tick's command is still to come. Somebody else carries what the soft start withholds.
     const std::uint64_t command = CommandAtWork(state, counters_.ticks - 1);
@@ -147,7 +149,7 @@ void SafetyFilter::Observe(const SafetyInput& input) noexcept {
     smooth_V_.setZero();
     passivity_.Observe(Vector6d::Zero(), Vector6d::Zero(), period_, input.stored_energy);
   }
-  X_last_ = state.X_DH;
+  X_last_ = X;
   last_sequence_ = state.sequence;
   has_pose_ = true;
 }

@@ -134,7 +134,7 @@ class SafetyFilter {
   int missing_ = 0;        // samples in a row
   double opened_for_ = 0;  // [s]
   std::uint64_t last_sequence_ = 0;
-  Posed X_last_;
+  Axes X_last_;
   Vector6d smooth_V_ = Vector6d::Zero();           // for the trip
   Vector6d last_ = Vector6d::Zero();               // the last wrench that went out
   std::array<Vector6d, kMemory> sent_, withheld_;  // by sequence

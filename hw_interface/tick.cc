@@ -5,13 +5,14 @@
 namespace vmech {
 
 Posed Registration::HandInWorld(const Posed& X_DH) const noexcept {
-  const Axes X_WK = AxesOf(X_WD) * X_DH;
+  const Axes X_WK = AxesOf(X_WD) * AxesOf(X_DH);
   return PoseOf(Turned(X_WK, R_HK, X_WK.p));
 }
 
-ObservedHand Registration::Observed(const Posed& X_DH, const Vector6d& V_DH) const noexcept {
-  const Vector3d v = V_DH.head<3>(), w = V_DH.tail<3>();
-  return {HandInWorld(X_DH), Stacked<double>(X_WD.R * v, X_WD.R * w)};
+void Registration::TakeHandInWorld(const MovingFrame& handle, MovingFrame* hand) const noexcept {
+  const Axes D = AxesOf(X_WD), X_WK = D * handle.X;
+  hand->X = Turned(X_WK, R_HK, X_WK.p);
+  hand->V = {Turned(D, handle.V.linear), Turned(D, handle.V.angular)};
 }
 
 Registration GraspedAt(const Matrix3d& R_WD, const Posed& X_DH, const Posed& X_WG) noexcept {

@@ -5,14 +5,9 @@
 #include <vector>
 
 #include "vmech/hw_interface/recording.h"
+#include "vmech/kinematics/screw.h"
 
 namespace vmech {
-
-/// Pose and twist of the hand as an observer knows them (HandObserver).
-struct ObservedHand {
-  Posed X_WH;
-  Vector6d V_WH;  ///< [v; w] at Ho, axes of W
-};
 
 /// How the master's handle is laid over the mechanism's world W: D is placed by X_WD, and the
 /// hand's frame is the handle turned by R_HK, so that it can coincide with a grasp frame of any
@@ -24,7 +19,8 @@ struct Registration {
   Matrix3d R_HK = Matrix3d::Identity();
 
   Posed HandInWorld(const Posed& X_DH) const noexcept;
-  ObservedHand Observed(const Posed& X_DH, const Vector6d& V_DH) const noexcept;
+  /// The hand, of a handle that moves in D.
+  void TakeHandInWorld(const MovingFrame& handle, MovingFrame* hand) const noexcept;
 };
 
 /// The registration that puts the hand where the grasp frame is, with the device's axes along R_WD:
@@ -37,7 +33,8 @@ struct TickInput {
   double elapsed = 0;  ///< since the last fresh sample; a whole number of periods [s]
   bool held = true;    ///< false: the hand has let go, nothing is felt
   const MasterState* state = nullptr;
-  const ObservedHand* observed = nullptr;  ///< of a fresh sample; null: nobody observes it
+  /// The hand in a fresh sample as an observer knows it (HandObserver); null: nobody observes it.
+  const MovingFrame* observed = nullptr;
 };
 
 enum class TickStatus : std::uint8_t {

@@ -69,18 +69,22 @@ RelativeMotion<T> MotionAcross(const TreeNode& node, const Pose<T>& X_WB, const 
 }  // namespace
 
 void Sines(const KinematicTree& tree, const double* q, double* sine, double* cosine) noexcept {
-  // Number by number: loading four at once would wait for the last of them to be written.
   const int* turning = tree.turning.data();
   const int count = static_cast<int>(tree.turning.size());
-  for (int k = 0; k < count; k += Packet::kLanes) {
+  const auto take_four = [&](const auto& coordinate) {
+    // Number by number: loading four at once would wait for the last of them to be written.
     Packet s, c;
-    const auto angle = [&](int lane) { return q[turning[std::min(k + lane, count - 1)]]; };
-    SinCos(Packet::Of(angle), &s, &c);
-    for (int lane = 0; lane < Packet::kLanes && k + lane < count; ++lane) {
-      sine[turning[k + lane]] = s[lane];
-      cosine[turning[k + lane]] = c[lane];
+    SinCos(Packet::Of([&](int lane) { return q[coordinate(lane)]; }), &s, &c);
+    for (int lane = 0; lane < Packet::kLanes; ++lane) {
+      sine[coordinate(lane)] = s[lane];
+      cosine[coordinate(lane)] = c[lane];
     }
+  };
+  int k = 0;
+  for (; k + Packet::kLanes <= count; k += Packet::kLanes) {
+    take_four([&](int lane) { return turning[k + lane]; });
   }
+  if (k < count) take_four([&](int lane) { return turning[std::min(k + lane, count - 1)]; });
 }
 
 template <typename T>

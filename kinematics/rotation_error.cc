@@ -117,14 +117,17 @@ Screw HandError(const Axes& G, const Axes& H) noexcept {
 }
 
 Posed Displaced(const Posed& X, const Vector6d& way) noexcept {
-  const Four r = FourOf(way.tail<3>()), p = FourOf(X.p) + FourOf(way.head<3>());
+  return PoseOf(Displaced(AxesOf(X), ScrewOf(way)));
+}
+
+Axes Displaced(const Axes& X, const Screw& way) noexcept {
+  const Four& r = way.angular;
   const auto [s, c] = RodriguesAt(Dot(r, r));
-  const auto turned = [&](const Four& a) {
+  const auto turned = [&, s = s, c = c](const Four& a) {
     const Four ra = Cross(r, a);
     return a + s * ra + c * Cross(r, ra);
   };
-  return PoseOf(
-      {turned(FourOf(X.R.col(0))), turned(FourOf(X.R.col(1))), turned(FourOf(X.R.col(2))), p});
+  return {turned(X.x), turned(X.y), turned(X.z), X.p + way.linear};
 }
 
 Matrix3d RotationBy(const Vector3d& r) noexcept {

@@ -21,6 +21,7 @@ Screw HandError(const Axes& X_WG, const Axes& X_WH) noexcept;
 /// Its inverse: the pose to which `way` [dp; dr] leads from X, HandError(X, Displaced(X, way)) =
 /// way for turns below half a turn.
 Posed Displaced(const Posed& X, const Vector6d& way) noexcept;
+Axes Displaced(const Axes& X, const Screw& way) noexcept;
 
 /// The rotation about r by |r| [rad].
 Matrix3d RotationBy(const Vector3d& r) noexcept;

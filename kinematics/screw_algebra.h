@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstring>
 
 #include "vmech/kinematics/screw.h"
@@ -31,6 +32,9 @@ inline Four Cross(const Four& a, const Four& b) noexcept {
 inline double Dot(const Four& a, const Four& b) noexcept {
   const Four ab = a * b;
   return (ab[0] + ab[2]) + ab[1];
+}
+inline double Length(const Four& a) noexcept {
+  return std::sqrt(Dot(a, a));
 }
 
 /// R a.

@@ -86,7 +86,10 @@ void HeldTick::Observe() {
 void HeldTick::Step() {
   const MasterState& state = NextSample();
   observed_ = hands_[next_];
-  if (!forward_) observed_.V_WH = -observed_.V_WH;
+  if (!forward_) {
+    observed_.V.linear = -observed_.V.linear;
+    observed_.V.angular = -observed_.V.angular;
+  }
   StepOn(state);
 }
 
@@ -101,7 +104,7 @@ void HeldTick::Resolve() {
 /// The arm of the samples exerts nothing.
 void HeldTick::ObserveOn(const MasterState& state) {
   observer_->Update(state, Vector6d::Zero(), 1);
-  observed_ = registration_.Observed(observer_->X_DH(), observer_->V_DH());
+  registration_.TakeHandInWorld(observer_->hand_D(), &observed_);
 }
 
 void HeldTick::StepOn(const MasterState& state) {

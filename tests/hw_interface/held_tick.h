@@ -53,8 +53,8 @@ class HeldTick {
   std::unique_ptr<SafetyFilter> safety_;
   std::unique_ptr<ArmTorques> torques_;
   Registration registration_;
-  ObservedHand observed_;
-  std::vector<ObservedHand> hands_;  // of the samples, on the way there
+  MovingFrame observed_;
+  std::vector<MovingFrame> hands_;  // of the samples, on the way there
   TickOutput wanted_;
   MasterCommand command_;
   std::vector<double> channels_;
