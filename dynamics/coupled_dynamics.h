@@ -56,7 +56,8 @@ class CoupledDynamics {
     coupled_ = false;
     spring_ = 0;
   }
-  /// A step with the hand at X_WH, moving with V_WH [v; w] at Ho, world axes.
+  /// A step with the hand at X_WH, moving with V_WH [v; w] at Ho, world axes; or with its frame in
+  /// W.
   [[nodiscard]] CoupledStatus Step(const Posed& X_WH, const Vector6d& V_WH) noexcept;
   [[nodiscard]] CoupledStatus Step(const MovingFrame& hand) noexcept;
 
@@ -126,7 +127,6 @@ class CoupledDynamics {
   VectorXd q_, v_, next_q_, next_v_, vdot_, momenta_, bias_, right_, held_right_, limited_right_,
       x_, aim_, rest_, mu_, d_, opening_;
   VectorXd miss_;  // by which the last step's aim failed
-
   std::vector<Wrenchd> joints_;
   std::vector<Freedom> freedoms_;
   MovingFrame hand_;
