@@ -14,14 +14,14 @@ namespace {
 
 /// Of loops against the rest, see SaddleSystem.
 constexpr double kLoopWeight = 1e5;
-/// Of the largest diagonal of A: holds a freedom without inertia.
-constexpr double kDamping = 1e-14;
+constexpr double kBallast = 1e-14;  // of the largest inertia
 /// A limit's stiffness over what it has to hold.
 constexpr double kHardLimit = 1e4;
 constexpr int kContactChanges = 3;
 constexpr int kClosingSteps = 5;
 constexpr double kClosed = 3e-11;      // [-] where the closing stops
 constexpr double kStillClosed = 1e-9;  // [-] beyond, a step is not taken
+constexpr double kSameWay = 1e-3;      // of a velocity, across the last
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr double kFarthest = 0.1;  // [rad] or [m] that a coordinate moves in a step
 
@@ -45,6 +45,15 @@ double SpringEnergy(const Four& way, const Four& pull, double most) {
   if (force2 <= most * most) return whole;
   const double part = most / std::sqrt(force2);  // of the way, until it slips
   return whole * part * (2 - part);
+}
+
+/// n columns, and zeros that fill up whole registers.
+MatrixXd PaddedSquare(int n) {
+  return MatrixXd::Zero(n, PaddedSize(n));
+}
+
+double SquaredSpeed(const VectorXd& v) {
+  return DotOfFours(v.data(), v.data(), static_cast<int>(v.size()));
 }
 
 /// Shortens a vector to `most`. True if it was longer.
@@ -71,20 +80,18 @@ CoupledDynamics::CoupledDynamics(const KinematicTree& tree, const GraspFrame& gr
       T_(step),
       pose_(tree, grasp),
       system_(tree.nv, static_cast<int>(pose_.C().rows())),
-      M_(MatrixXd::Zero(tree.nv, tree.nv)),
+      M_(PaddedSquare(tree.nv)),
       A_(M_),
-      held_A_(M_),
       limited_A_(M_),
       rootKJ_(MatrixXd::Zero(PaddedSize(6), tree.nv)),
       q_(q),
-      v_(VectorXd::Zero(tree.nv)),
+      v_(VectorXd::Zero(PaddedSize(tree.nv))),
       next_q_(q),
       next_v_(v_),
       vdot_(v_),
       momenta_(v_),
       bias_(v_),
       right_(v_),
-      held_right_(v_),
       limited_right_(v_),
       x_(v_),
       aim_(v_),
@@ -102,10 +109,11 @@ CoupledDynamics::CoupledDynamics(const KinematicTree& tree, const GraspFrame& gr
   TakeInertia();
   TakeVelocities();
   BiasForces();
+  ballast_ = kBallast / T_ * M_.diagonal().maxCoeff();
   BuildSystem();
   AddCoupling();
   const double rows = pose_.C().squaredNorm();
-  if (rows > 0) system_.SetWeight(kLoopWeight * held_A_.trace() / rows);
+  if (rows > 0) system_.SetWeight(kLoopWeight * A_.trace() / rows);
   system_.SetConstraints(pose_.C());
 }
 
@@ -146,12 +154,13 @@ CoupledStatus CoupledDynamics::Step(const MovingFrame& hand) noexcept {
   AddCoupling();
   // Where it slips, a rough velocity tells in which direction.
   const Solving first = slipping_ ? Solving::kRoughly : Solving::kFully;
-  if (!SolveWithLimits(held_A_, held_right_, first)) return CoupledStatus::kFailed;
+  if (!SolveWithLimits(first)) return CoupledStatus::kFailed;
   if (Slip()) {
+    BuildSystem();
     pose_.AddForces(w_, &right_);
-    if (!SolveWithLimits(A_, right_, Solving::kFully)) return CoupledStatus::kFailed;
+    if (!SolveWithLimits(Solving::kFully)) return CoupledStatus::kFailed;
   } else if (first == Solving::kRoughly) {
-    if (!SolveWithLimits(held_A_, held_right_, Solving::kFully)) return CoupledStatus::kFailed;
+    if (!SolveWithLimits(Solving::kFully)) return CoupledStatus::kFailed;
     Slip();
   }
   FindWrenches();
@@ -163,8 +172,7 @@ CoupledStatus CoupledDynamics::Step(const MovingFrame& hand) noexcept {
 
 /// h(q, v), and -T C' v, of which the next velocities must make up for.
 void CoupledDynamics::BiasForces() noexcept {
-  pose_.TakeLoopBias(&d_);
-  d_ *= T_;
+  pose_.TakeLoopBias(-T_, &d_);
   pose_.TakeForces(&bias_);
 }
 
@@ -173,22 +181,15 @@ void CoupledDynamics::BuildSystem() noexcept {
   const double rate = 1 / T_;
   A_ = rate * M_;
   right_ = rate * momenta_ - bias_;
-  A_.diagonal().array() += kDamping * A_.diagonal().maxCoeff();
+  A_.diagonal().array() += ballast_;
   AddPassive();
 }
 
-/// The same with the coupling.
 void CoupledDynamics::AddCoupling() noexcept {
-  held_right_ = right_;
-  if (!coupled_) {
-    held_A_ = A_;
-    return;
-  }
+  if (!coupled_) return;
   pose_.TakeWeightedJacobian(coupling_.root_gain, &rootKJ_);
-  system_.Gram(rootKJ_, &held_A_);
-  held_A_ += A_;
-  pose_.AddForces(Scaled(coupling_.stiffness, e1_) + Scaled(coupling_.damping, hand_.V),
-                  &held_right_);
+  system_.AddGram(rootKJ_, &A_);
+  pose_.AddForces(Scaled(coupling_.stiffness, e1_) + Scaled(coupling_.damping, hand_.V), &right_);
 }
 
 /// The coupling's wrench at the end of the step. True if it is larger than it may be; then w_ is
@@ -206,10 +207,9 @@ bool CoupledDynamics::Slip() noexcept {
 }
 
 /// Velocities with the joints' limits; those that held last are tried first.
-bool CoupledDynamics::SolveWithLimits(const MatrixXd& A, const VectorXd& right,
-                                      Solving how) noexcept {
+bool CoupledDynamics::SolveWithLimits(Solving how) noexcept {
   for (int i = 0; i < kContactChanges; ++i) {
-    if (!SolveVelocity(A, right, how)) return false;
+    if (!SolveVelocity(how)) return false;
     if (!ChangeContacts()) break;
   }
   return true;
@@ -225,33 +225,34 @@ void CoupledDynamics::AddPassive() noexcept {
 }
 
 /// (A + limits) v+ + C' mu = right, C v+ = d.
-bool CoupledDynamics::SolveVelocity(const MatrixXd& A, const VectorXd& right,
-                                    Solving how) noexcept {
-  const bool limited = at_limit();
-  if (limited) {
-    limited_A_ = A;
-    limited_right_ = right;
+bool CoupledDynamics::SolveVelocity(Solving how) noexcept {
+  if (at_limit_) AddLimits();
+  const MatrixXd& A = at_limit_ ? limited_A_ : A_;
+  const VectorXd& right = at_limit_ ? limited_right_ : right_;
+  if (!system_.Factor(A)) return false;
+  if (how == Solving::kRoughly) {
+    system_.Approach(pose_.C(), right, d_, &next_v_);
+  } else {
+    system_.Solve(A, pose_.C(), right, d_, &next_v_);
   }
+  return std::isfinite(SquaredSpeed(next_v_));
+}
+
+void CoupledDynamics::AddLimits() noexcept {
+  limited_A_ = A_;
+  limited_right_ = right_;
   for (const auto& [q, v, passive, lower, upper, contact] : freedoms_) {
     if (contact == 0) continue;
-    const double hold = kHardLimit * A(v, v);
+    const double hold = kHardLimit * A_(v, v);
     limited_A_(v, v) += hold;
     limited_right_[v] += hold * ((contact > 0 ? upper : lower) - q_[q]) / T_;
   }
-  const MatrixXd& A_now = limited ? limited_A_ : A;
-  const VectorXd& right_now = limited ? limited_right_ : right;
-  if (!system_.Factor(A_now)) return false;
-  if (how == Solving::kRoughly) {
-    system_.Approach(pose_.C(), right_now, d_, &next_v_);
-  } else {
-    system_.Solve(A_now, pose_.C(), right_now, d_, &next_v_);
-  }
-  return next_v_.allFinite();
 }
 
 /// Limits that the step would pass begin to hold, limits that would pull let go. True if any did.
 bool CoupledDynamics::ChangeContacts() noexcept {
   bool changed = false;
+  at_limit_ = false;
   for (auto& [q, v, passive, lower, upper, contact] : freedoms_) {
     const double end = q_[q] + T_ * next_v_[v];
     const double above = end - upper, below = lower - end;
@@ -265,13 +266,9 @@ bool CoupledDynamics::ChangeContacts() noexcept {
       contact = above > 0 ? 1 : -1;
       changed = true;
     }
+    at_limit_ |= contact != 0;
   }
   return changed;
-}
-
-bool CoupledDynamics::at_limit() const noexcept {
-  return std::any_of(freedoms_.begin(), freedoms_.end(),
-                     [](const Freedom& freedom) { return freedom.contact != 0; });
 }
 
 /// The joints' wrenches, with the accelerations of the step.
@@ -279,17 +276,16 @@ void CoupledDynamics::FindWrenches() noexcept {
   vdot_ = (next_v_ - v_) / T_;
   pose_.SetAccelerations(vdot_);
   system_.TakeMultipliers(pose_.C(), d_, &mu_);
-  mu_ = -mu_;
   pose_.LoadJoints(w_, mu_, &joints_);
 }
 
 CoupledStatus CoupledDynamics::Move() noexcept {
-  const double farthest = T_ * next_v_.lpNorm<Eigen::Infinity>();
-  if (farthest > kFarthest) next_v_ *= kFarthest / farthest;
+  const double way2 = T_ * T_ * SquaredSpeed(next_v_);
+  if (way2 > kFarthest * kFarthest) next_v_ *= kFarthest / std::sqrt(way2);
   const bool closed = Close();
   if (closed) {
-    q_ = next_q_;
-    v_ = next_v_;
+    q_.swap(next_q_);
+    v_.swap(next_v_);
     pose_.SetJacobians();
   } else {
     v_.setZero();
@@ -306,31 +302,46 @@ CoupledStatus CoupledDynamics::Move() noexcept {
 /// Where the step leads, q+ = q (+) T v+, and from there chord steps C dq = e2. The first goes
 /// along with the step.
 bool CoupledDynamics::Close() noexcept {
-  x_ = T_ * next_v_;
-  if (!tree_.loops.empty()) AimAtClosure();
+  if (tree_.loops.empty()) {
+    x_ = T_ * next_v_;
+  } else {
+    AimAtClosure();
+  }
   next_q_ = q_;
   for (int i = 0;; ++i) {
     MoveCoordinates(tree_, x_.data(), next_q_.data());
     pose_.SetLoops(next_q_);
-    closure_ = pose_.e2().lpNorm<Eigen::Infinity>();
-    if (i == 0) miss_ += pose_.e2();
-    if (i == kClosingSteps || closure_ <= kClosed || !std::isfinite(closure_)) break;
-    system_.Approach(pose_.C(), rest_, pose_.e2(), &x_);
+    if (tree_.loops.empty()) return true;
+    const VectorXd& e2 = pose_.e2();
+    if (i == 0) miss_ += e2;
+    squared_closure_ = DotOfFours(e2.data(), e2.data(), static_cast<int>(e2.size()));
+    if (i == kClosingSteps || squared_closure_ <= kClosed * kClosed ||
+        !std::isfinite(squared_closure_)) {
+      return squared_closure_ <= kStillClosed * kStillClosed;
+    }
+    system_.Approach(pose_.C(), rest_, e2, &x_);
   }
-  return closure_ <= kStillClosed;
 }
 
 /// Adds to the step what closes the loops at its end, where it leaves errors of
 ///
 ///   e2 - T C v+ - T^2/2 C'(v+) v+ = e2 - T d - T^2/2 C'(v+) v+
 ///
-/// and, to third order, the same as the last step.
+/// and, to third order, the same as the last step. While a mechanism goes on in the direction of
+/// the last step, as it must with a single freedom, C'v grows with the square of the speed.
 void CoupledDynamics::AimAtClosure() noexcept {
-  pose_.SetVelocities(next_v_);
-  pose_.TakeLoopBias(&opening_);
-  opening_ = pose_.e2() - T_ * d_ + (0.5 * T_ * T_) * opening_ + miss_;
+  const double speed2 = SquaredSpeed(v_);
+  const double along = speed2 > 0 ? Dot(next_v_.data(), v_.data(), tree_.nv) / speed2 : 0;
+  x_ = next_v_ - along * v_;
+  if (SquaredSpeed(x_) < kSameWay * kSameWay * SquaredSpeed(next_v_)) {
+    opening_ = pose_.e2() - (T_ * (1 - 0.5 * along * along)) * d_ + miss_;
+  } else {
+    pose_.SetVelocities(next_v_);
+    pose_.TakeLoopBias(-0.5 * T_ * T_, &opening_);
+    opening_ += pose_.e2() - T_ * d_ + miss_;
+  }
   system_.Approach(pose_.C(), rest_, opening_, &aim_);
-  x_ += aim_;
+  x_ = T_ * next_v_ + aim_;
 }
 
 /// Inertia, and the energies without the coupling's.
@@ -370,6 +381,10 @@ void CoupledDynamics::TakeError() noexcept {
   const Screw pull = Scaled(coupling_.stiffness, e1_);
   spring_ = SpringEnergy(e1_.linear, pull.linear, coupling_.max_force) +
             SpringEnergy(e1_.angular, pull.angular, coupling_.max_moment);
+}
+
+double CoupledDynamics::closure() const noexcept {
+  return std::sqrt(squared_closure_);
 }
 
 Vector6d CoupledDynamics::e1() const noexcept {

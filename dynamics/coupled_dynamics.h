@@ -63,7 +63,7 @@ class CoupledDynamics {
 
   // After the last step.
   const VectorXd& q() const noexcept { return q_; }
-  const VectorXd& v() const noexcept { return v_; }
+  auto v() const noexcept { return v_.head(tree_.nv); }
   Posed X_WG() const noexcept { return pose_.X_WG(); }
   /// HandError of the hand [6; m, rad].
   Vector6d e1() const noexcept;
@@ -77,8 +77,8 @@ class CoupledDynamics {
   const std::vector<Wrenchd>& joints() const noexcept { return joints_; }
   /// Kinetic energy, weight, springs of joints and coupling [J].
   double Energy() const noexcept { return kinetic_ + potential_ + spring_; }
-  double closure() const noexcept { return closure_; }  ///< largest loop error [-], lengths over L
-  bool at_limit() const noexcept;                       ///< a joint stands at a limit
+  double closure() const noexcept;                      ///< norm of the loop errors, lengths over L
+  bool at_limit() const noexcept { return at_limit_; }  ///< a joint stands at a limit
   bool slipping() const noexcept { return slipping_; }  ///< the coupling is at its largest wrench
 
  private:
@@ -103,10 +103,11 @@ class CoupledDynamics {
   void ListFreedoms();
   void BiasForces() noexcept;
   void BuildSystem() noexcept;
-  void AddCoupling() noexcept;
   void AddPassive() noexcept;
-  bool SolveWithLimits(const MatrixXd& A, const VectorXd& right, Solving how) noexcept;
-  bool SolveVelocity(const MatrixXd& A, const VectorXd& right, Solving how) noexcept;
+  void AddCoupling() noexcept;
+  bool SolveWithLimits(Solving how) noexcept;
+  bool SolveVelocity(Solving how) noexcept;
+  void AddLimits() noexcept;
   bool Slip() noexcept;
   bool ChangeContacts() noexcept;
   void FindWrenches() noexcept;
@@ -123,20 +124,22 @@ class CoupledDynamics {
   double T_;
   HeldPose pose_;
   SaddleSystem system_;
-  MatrixXd M_, A_, held_A_, limited_A_, rootKJ_;
-  VectorXd q_, v_, next_q_, next_v_, vdot_, momenta_, bias_, right_, held_right_, limited_right_,
-      x_, aim_, rest_, mu_, d_, opening_;
-  VectorXd miss_;  // by which the last step's aim failed
+  MatrixXd M_, A_, limited_A_, rootKJ_;
+  VectorXd q_, v_, next_q_, next_v_, vdot_, momenta_, bias_, right_, limited_right_, x_, aim_,
+      rest_, mu_, d_, opening_;
+  VectorXd miss_;   // by which the last step's aim failed
+  double ballast_;  // of every freedom: holds one without inertia
   std::vector<Wrenchd> joints_;
   std::vector<Freedom> freedoms_;
   MovingFrame hand_;
   Screw e1_, w_;
-  double closure_ = 0;
+  double squared_closure_ = 0;
   double kinetic_ = 0, potential_ = 0;  // without the coupling's [J]
   double spring_ = 0;                   // of the coupling [J]
   double lost_ = 0;                     // energy that steps may give back [J]
   bool slipping_ = false;
   bool coupled_ = true;
+  bool at_limit_ = false;
 };
 
 }  // namespace vmech

@@ -83,7 +83,7 @@ bool HandDynamics::Evaluate(const Vector6d& V_WG, const Vector6d& A_WG, double i
   // s (M v' + c(q, v)) = M (s v') + c(q, s^1/2 v).
   felt_v_ = std::sqrt(inertia) * v_;
   pose_.SetVelocities(felt_v_);
-  pose_.TakeLoopBias(&d_);
+  pose_.TakeLoopBias(-1, &d_);
   SolveMotion(inertia * A_WG - Vector6Of(pose_.GraspBias()), d_, &vdot_);
   pose_.SetAccelerations(vdot_);
   pose_.TakeForces(&tau_);
@@ -91,6 +91,7 @@ bool HandDynamics::Evaluate(const Vector6d& V_WG, const Vector6d& A_WG, double i
   system_.Solve(A_, pose_.C(), tau_, none_, &x_);
   w_d_ = K_.cwiseProduct(Vector6Of(pose_.Twist(x_)));
   system_.TakeMultipliers(pose_.C(), none_, &mu_);
+  mu_ = -mu_;
   pose_.LoadJoints(ScrewOf(w_d_), mu_, &joints_);
   return w_d_.allFinite();
 }
@@ -103,7 +104,8 @@ Posed HandDynamics::SetPose(const VectorXd& q) noexcept {
 
 bool HandDynamics::Factor() noexcept {
   pose_.TakeWeightedJacobian(ScrewOf(root_K_), &rootKJ_);
-  system_.Gram(rootKJ_, &A_);
+  A_.setZero();
+  system_.AddGram(rootKJ_, &A_);
   A_.diagonal().array() += kDamping * A_.trace();
   system_.SetConstraints(pose_.C());
   return system_.Factor(A_);

@@ -48,7 +48,6 @@ void HeldPose::SetLoops(const VectorXd& q) noexcept {
 }
 
 void HeldPose::SetJacobians() noexcept {
-  JointScrews(tree_, &ws_);
   BodyInertias(tree_, ws_, &inertias_);
   G_ = ws_.at(grasp_.node).X * grasp_.X_BG;
   PointJacobian(tree_, ws_, grasp_.node, G_.p, &J_);
@@ -104,13 +103,11 @@ void HeldPose::SetVelocities(const VectorXd& v) noexcept {
   ForwardVelocities(tree_, v.data(), &ws_);
 }
 
-void HeldPose::TakeLoopBias(VectorXd* d) noexcept {
+void HeldPose::TakeLoopBias(double s, VectorXd* d) noexcept {
   VelocityProducts(tree_, &ws_);
-  ForwardAccelerations(tree_, nullptr, &ws_);
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
-    LoopBias(tree_, ws_, static_cast<int>(l), d->data() + tree_.loops[l].row);
+    LoopBias(tree_, ws_, static_cast<int>(l), s, d->data() + tree_.loops[l].row);
   }
-  *d = -*d;
 }
 
 Screw HeldPose::GraspBias() const noexcept {
@@ -138,7 +135,7 @@ void HeldPose::LoadJoints(const Screw& w, const VectorXd& mu,
     const Loop& loop = tree_.loops[l];
     const LoopScrews& s = ws_.loops[l];
     Screw W;
-    for (int k = 0; k < loop.rows; ++k) W += mu[loop.row + k] * s.rows[k];
+    for (int k = 0; k < loop.rows; ++k) W -= mu[loop.row + k] * s.rows[k];
     for (const LoopNode& n : loop.path) ws_.at(n.node).F -= n.sign * W;
     (*joints)[loop.joint] = WrenchIn(s.F, W);
   }

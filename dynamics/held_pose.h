@@ -46,9 +46,9 @@ class HeldPose {
   /// Takes v [nv].
   void SetVelocities(const VectorXd& v) noexcept;
   double KineticEnergy() const noexcept;  ///< at these [J]
-  /// Takes v' = 0, and finds what comes of v alone, as all that follows needs it; d = -C' v, scaled
-  /// and padded like C.
-  void TakeLoopBias(VectorXd* d) noexcept;
+  /// Takes v' = 0, and finds what comes of v alone, as all that follows needs it; d = s C' v,
+  /// scaled and padded like C.
+  void TakeLoopBias(double s, VectorXd* d) noexcept;
   /// The acceleration of Go for v' = 0.
   Screw GraspBias() const noexcept;
   /// Takes v' [nv].
@@ -57,7 +57,7 @@ class HeldPose {
   void TakeForces(VectorXd* tau) noexcept;
   /// Joint by joint of the mechanism, what the first link exerts on the second about the second
   /// anchor's origin, axes of the first anchor, while a hand exerts w at Go and the loops the
-  /// multipliers of tau = J' w + C' mu.
+  /// multipliers of M v' + h = J' w - C' mu.
   void LoadJoints(const Screw& w, const VectorXd& mu, std::vector<Wrenchd>* joints) noexcept;
 
   /// Zero with all centres of gravity at the height of Wo [J].

@@ -7,14 +7,20 @@
 namespace vmech {
 namespace {
 
-ScrewInertia InertiaInWorld(const TreeNode& node, const Axes& X) {
-  const Four c = PointInWorld(X, node.p_BoBcm), mc = node.mass * c;
+ScrewInertia InertiaInWorld(const ScrewInertias::Body& body, const Axes& X) {
+  const Four c = PointInWorld(X, body.p_BoBcm), mc = body.mass * c;
   // R I R', and the parallel axes: I + m (c'c - c c').
-  const Axes RI = Turned(X, node.I_Bcm, c);
+  const Axes RI{Turned(X, body.Ix), Turned(X, body.Iy), Turned(X, body.Iz), c};
   const double square = Dot(c, mc);
   const auto column = [&](int k) { return Turned(RI, X.x[k], X.y[k], X.z[k]) - c[k] * mc; };
-  return {node.mass, mc, column(0) + Four{square, 0, 0, 0}, column(1) + Four{0, square, 0, 0},
+  return {body.mass, mc, column(0) + Four{square, 0, 0, 0}, column(1) + Four{0, square, 0, 0},
           column(2) + Four{0, 0, square, 0}};
+}
+
+Screw MomentumOf(const ScrewInertias::Body& body, const Axes& X, const Screw& V) {
+  const Four c = PointInWorld(X, body.p_BoBcm), w_B = TurnedBack(X, V.angular);
+  const Four spin_B = w_B[0] * body.Ix + w_B[1] * body.Iy + w_B[2] * body.Iz;
+  return WrenchAt(c, body.mass * VelocityAt(c, V), Turned(X, spin_B));
 }
 
 /// Every node carries its children. Writes the generalised forces, unless null.
@@ -37,6 +43,19 @@ void HandOn(const KinematicTree& tree, ScrewWorkspace* ws, double* tau) {
 
 }  // namespace
 
+ScrewInertias::ScrewInertias(const KinematicTree& tree)
+    : in_node(tree.nodes.size() + 1),
+      bodies(in_node.size()),
+      carried(bodies),
+      carries(bodies.size()) {
+  for (size_t i = 0; i < tree.nodes.size(); ++i) {
+    const TreeNode& node = tree.nodes[i];
+    const Matrix3d& I = node.I_Bcm;
+    in_node[i + 1] = {node.mass, FourOf(node.p_BoBcm), FourOf(I.col(0)), FourOf(I.col(1)),
+                      FourOf(I.col(2))};
+  }
+}
+
 void FallUpwards(const Vector3d& gravity_W, ScrewWorkspace* ws) noexcept {
   ws->nodes[0].A.linear = -FourOf(gravity_W);
 }
@@ -45,7 +64,7 @@ void BodyInertias(const KinematicTree& tree, const ScrewWorkspace& ws,
                   ScrewInertias* inertias) noexcept {
   for (size_t i = 0; i < tree.nodes.size(); ++i) {
     if (tree.nodes[i].link < 0) continue;
-    inertias->bodies[i + 1] = InertiaInWorld(tree.nodes[i], ws.nodes[i + 1].X);
+    inertias->bodies[i + 1] = InertiaInWorld(inertias->in_node[i + 1], ws.nodes[i + 1].X);
   }
 }
 
@@ -94,19 +113,12 @@ void NewtonEuler(const KinematicTree& tree, const ScrewInertias& inertias, Screw
   HandOn(tree, ws, tau);
 }
 
-void Momenta(const KinematicTree& tree, const double* v, ScrewWorkspace* ws,
-             double* momenta) noexcept {
+void Momenta(const KinematicTree& tree, const ScrewInertias& inertias, const double* v,
+             ScrewWorkspace* ws, double* momenta) noexcept {
   ForwardVelocities(tree, v, ws);
-  for (size_t i = 0; i < tree.nodes.size(); ++i) {
-    const TreeNode& node = tree.nodes[i];
-    ScrewWorkspace::Node& s = ws->nodes[i + 1];
-    s.F = {};
-    if (node.link < 0) continue;
-    const Four c = PointInWorld(s.X, node.p_BoBcm), w_B = TurnedBack(s.X, s.V.angular);
-    const Four linear = node.mass * VelocityAt(c, s.V);
-    const Matrix3d& I = node.I_Bcm;
-    const Vector3d spin = w_B[0] * I.col(0) + w_B[1] * I.col(1) + w_B[2] * I.col(2);
-    s.F = WrenchAt(c, linear, Turned(s.X, spin));
+  for (size_t i = 1; i < ws->nodes.size(); ++i) {
+    ScrewWorkspace::Node& s = ws->nodes[i];
+    s.F = MomentumOf(inertias.in_node[i], s.X, s.V);
   }
   HandOn(tree, ws, momenta);
 }

@@ -9,12 +9,18 @@ namespace vmech {
 /// The algorithms of newton_euler.h for one pose in screws about Wo, for the tick; joints left
 /// open. What a pass finds stays for the next: inertias hold as long as the pose.
 
-/// Inertia of every node about Wo, node i at i + 1.
+/// Inertia of every node, node i at i + 1.
 struct ScrewInertias {
-  explicit ScrewInertias(const KinematicTree& tree)
-      : bodies(tree.nodes.size() + 1), carried(bodies), carries(bodies.size()) {}
+  explicit ScrewInertias(const KinematicTree& tree);
 
-  std::vector<ScrewInertia> bodies;
+  /// As in TreeNode, axes of the node.
+  struct Body {
+    double mass = 0;
+    Four p_BoBcm{};
+    Four Ix{}, Iy{}, Iz{};  ///< columns of I_Bcm
+  };
+  std::vector<Body> in_node;         ///< of the tree
+  std::vector<ScrewInertia> bodies;  ///< about Wo
   // CompositeMassMatrix's own: what other nodes than the next have handed to a node, if any have.
   std::vector<ScrewInertia> carried;
   std::vector<char> carries;
@@ -44,8 +50,8 @@ void NewtonEuler(const KinematicTree& tree, const ScrewInertias& inertias, Screw
                  double* tau) noexcept;
 /// The joints' momenta M v [nv] at velocities v [nv]: the forces that bring them there from rest in
 /// a second. Needs S; writes V and F. Quicker than to find inertias for this alone.
-void Momenta(const KinematicTree& tree, const double* v, ScrewWorkspace* ws,
-             double* momenta) noexcept;
+void Momenta(const KinematicTree& tree, const ScrewInertias& inertias, const double* v,
+             ScrewWorkspace* ws, double* momenta) noexcept;
 
 /// Kinetic energy at V [J].
 double KineticEnergy(const KinematicTree& tree, const ScrewInertias& inertias,

@@ -43,7 +43,6 @@ ArmModel::ArmModel(std::shared_ptr<const ArmDescription> arm)
 
 void ArmModel::SetPosture(const double* q) noexcept {
   ForwardKinematics(arm_->tree, q, &ws_);
-  JointScrews(arm_->tree, &ws_);
 }
 
 Posed ArmModel::X_DH() const noexcept {
@@ -68,7 +67,6 @@ void ArmModel::BiasForces(const VectorXd& v, const Wrenchd& F_Ho) noexcept {
   ForwardVelocities(tree, v.data(), &ws_);
   VelocityProducts(tree, &ws_);
   BodyInertias(tree, ws_, &inertias_);
-  ForwardAccelerations(tree, nullptr, &ws_);
   GyroscopicWrenches(tree, inertias_, &ws_);
   NewtonEuler(tree, inertias_, &ws_, bias_.data());
   const Screw F_Do = WrenchAtBase(F_Ho.Stacked());
@@ -87,7 +85,7 @@ const MatrixXd& ArmModel::MassMatrix() noexcept {
 }
 
 void ArmModel::Momenta(const double* v, double* momenta) noexcept {
-  vmech::Momenta(arm_->tree, v, &ws_, momenta);
+  vmech::Momenta(arm_->tree, inertias_, v, &ws_, momenta);
 }
 
 double ArmModel::PotentialEnergy() noexcept {

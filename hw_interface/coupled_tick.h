@@ -51,6 +51,7 @@ class CoupledTick : public Tick {
 
   std::vector<std::string> ChannelNames() const override;
   Posed GraspFrame() const noexcept override { return dynamics_.X_WG(); }
+  bool TakesObserved() const noexcept override { return true; }
   /// The link whose skeleton, the lines between its anchors, is nearest; held as it is there.
   bool TakeHold(const Posed& X_WH) noexcept override;
   void Reset() noexcept override;

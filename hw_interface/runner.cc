@@ -16,8 +16,10 @@ std::unique_ptr<ArmTorques> MakeTorques(const RunnerOptions& options, const Devi
                                       info.angular.resolution);
 }
 
-std::unique_ptr<HandObserver> MakeObserver(const RunnerOptions& options, const DeviceInfo& info) {
-  if (options.observer.bandwidth == 0 || !HandObserver::Suits(info)) return nullptr;
+std::unique_ptr<HandObserver> MakeObserver(const RunnerOptions& options, const Tick& tick,
+                                           const DeviceInfo& info) {
+  if (!tick.TakesObserved() || options.observer.bandwidth == 0) return nullptr;
+  if (!HandObserver::Suits(info)) return nullptr;
   return std::make_unique<HandObserver>(options.observer, info);
 }
 
@@ -47,7 +49,7 @@ Runner::Runner(const RunnerOptions& options, Master* master, Tick* tick, LoopClo
       period_ns_(std::llround(period_ * 1e9)),
       safety_(options.safety, master->info()),
       torques_(MakeTorques(options, master->info())),
-      observer_(MakeObserver(options, master->info())),
+      observer_(MakeObserver(options, *tick, master->info())),
       channels_(tick->ChannelNames()) {
   options.Validate();
   slots_ = static_cast<std::uint64_t>(std::llround(options.seconds / period_));
@@ -131,13 +133,14 @@ TickOutput Runner::StepTick(IoStatus io, TickRecord* record) noexcept VMECH_NONB
   }
   TickInput input;
   input.held = holds_;
-  input.X_WH = registration_.HandInWorld(state_.X_DH);
   input.fresh = fresh_;
   input.elapsed = static_cast<double>(state_.sequence - last_sequence_) * period_;
   input.state = &state_;
   if (observer_) {
     registration_.TakeHandInWorld(observer_->hand_D(), &observed);
     input.observed = &observed;
+  } else {
+    input.X_WH = registration_.HandInWorld(state_.X_DH);
   }
   last_sequence_ = state_.sequence;
   out = tick_->Step(input, std::span<double>(record->channels.data(), channels_.size()));

@@ -34,11 +34,10 @@ SafetyOptions Completed(SafetyOptions options, const DeviceInfo& info) {
 
 /// The factor that brings a pair of vectors within a pair of lengths; at most 1.
 double Shrink(const Vector6d& F, double force, double moment) {
-  const double f = F.head<3>().norm();
-  const double m = F.tail<3>().norm();
+  const double f2 = F.head<3>().squaredNorm(), m2 = F.tail<3>().squaredNorm();
   double scale = 1;
-  if (f > force) scale = force / f;
-  if (m > moment) scale = std::min(scale, moment / m);
+  if (f2 > force * force) scale = force / std::sqrt(f2);
+  if (m2 > moment * moment) scale = std::min(scale, moment / std::sqrt(m2));
   return scale;
 }
 
@@ -173,8 +172,9 @@ Vector6d SafetyFilter::ExertedBy(std::uint64_t command, const MasterState& state
 }
 
 ForceOff SafetyFilter::Trip() const noexcept {
-  if (smooth_V_.head<3>().norm() > options_.max_speed) return ForceOff::kSpeed;
-  if (smooth_V_.tail<3>().norm() > options_.max_angular_speed) return ForceOff::kSpeed;
+  if (Shrink(smooth_V_, options_.max_speed, options_.max_angular_speed) < 1) {
+    return ForceOff::kSpeed;
+  }
   if (passivity_.energy() < -options_.energy_trip) return ForceOff::kEnergy;
   return ForceOff::kNone;
 }

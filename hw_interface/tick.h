@@ -28,12 +28,13 @@ struct Registration {
 Registration GraspedAt(const Matrix3d& R_WD, const Posed& X_DH, const Posed& X_WG) noexcept;
 
 struct TickInput {
-  Posed X_WH;          ///< the hand, as measured
+  Posed X_WH;          ///< the hand, as measured; not set where an observer knows it
   bool fresh = false;  ///< false: no new sample, the pose is that of the last tick
   double elapsed = 0;  ///< since the last fresh sample; a whole number of periods [s]
   bool held = true;    ///< false: the hand has let go, nothing is felt
   const MasterState* state = nullptr;
   /// The hand in a fresh sample as an observer knows it (HandObserver); null: nobody observes it.
+  /// For ticks that take it (TakesObserved) alone.
   const MovingFrame* observed = nullptr;
 };
 
@@ -66,6 +67,8 @@ class Tick {
   }
   /// Forgets velocities: the hand takes hold anew.
   virtual void Reset() noexcept = 0;
+  /// Does it go by TickInput::observed where there is one?
+  virtual bool TakesObserved() const noexcept { return false; }
   /// `channels` has as many entries as there are names.
   [[nodiscard]] virtual TickOutput Step(const TickInput& input,
                                         std::span<double> channels) noexcept = 0;

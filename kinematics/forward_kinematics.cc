@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "vmech/kinematics/packet.h"
 
@@ -9,7 +10,9 @@ namespace vmech {
 namespace {
 
 void TakeSines(const KinematicTree& tree, const Packet* q, TreeWorkspace<Packet>* ws) {
-  for (int k : tree.turning) SinCos(q[k], &ws->sine[k], &ws->cosine[k]);
+  for (size_t k = 0; k < tree.turning.size(); ++k) {
+    SinCos(q[tree.turning[k]], &ws->sine[k], &ws->cosine[k]);
+  }
 }
 
 void TakeSines(const KinematicTree& tree, const double* q, TreeWorkspace<double>* ws) {
@@ -71,25 +74,20 @@ RelativeMotion<T> MotionAcross(const TreeNode& node, const Pose<T>& X_WB, const 
 void Sines(const KinematicTree& tree, const double* q, double* sine, double* cosine) noexcept {
   const int* turning = tree.turning.data();
   const int count = static_cast<int>(tree.turning.size());
-  const auto take_four = [&](const auto& coordinate) {
+  for (int k = 0; k < count; k += Packet::kLanes) {
     // Number by number: loading four at once would wait for the last of them to be written.
+    const auto angle = [&](int lane) { return q[turning[std::min(k + lane, count - 1)]]; };
     Packet s, c;
-    SinCos(Packet::Of([&](int lane) { return q[coordinate(lane)]; }), &s, &c);
-    for (int lane = 0; lane < Packet::kLanes; ++lane) {
-      sine[coordinate(lane)] = s[lane];
-      cosine[coordinate(lane)] = c[lane];
-    }
-  };
-  int k = 0;
-  for (; k + Packet::kLanes <= count; k += Packet::kLanes) {
-    take_four([&](int lane) { return turning[k + lane]; });
+    SinCos(Packet::Of(angle), &s, &c);
+    std::memcpy(sine + k, &s, sizeof(s));
+    std::memcpy(cosine + k, &c, sizeof(c));
   }
-  if (k < count) take_four([&](int lane) { return turning[std::min(k + lane, count - 1)]; });
 }
 
 template <typename T>
 void ForwardKinematics(const KinematicTree& tree, const T* q, TreeWorkspace<T>* ws) {
   TakeSines(tree, q, ws);
+  const T *sine = ws->sine.data(), *cosine = ws->cosine.data();
   for (size_t i = 0; i < tree.nodes.size(); ++i) {
     const TreeNode& node = tree.nodes[i];
     Pose<T>& X = ws->nodes[i].X_WB;
@@ -98,14 +96,14 @@ void ForwardKinematics(const KinematicTree& tree, const T* q, TreeWorkspace<T>* 
       case NodeMotion::kFixed:
         break;
       case NodeMotion::kRevolute:
-        X.R = TurnedAboutZ(X.R, ws->sine[node.q], ws->cosine[node.q]);
+        X.R = TurnedAboutZ(X.R, *sine++, *cosine++);
         break;
       case NodeMotion::kPrismatic:
         X.p += q[node.q] * X.R.col(2);
         break;
       case NodeMotion::kScrew:
         X.p += (node.pitch * q[node.q]) * X.R.col(2);
-        X.R = TurnedAboutZ(X.R, ws->sine[node.q], ws->cosine[node.q]);
+        X.R = TurnedAboutZ(X.R, *sine++, *cosine++);
         break;
       case NodeMotion::kSpherical: {
         const Matrix3<T> R_FM = RotationOf(q + node.q);

@@ -8,7 +8,8 @@ namespace vmech {
 template <typename T>
 void ForwardKinematics(const KinematicTree& tree, const T* q, TreeWorkspace<T>* ws);
 
-/// Sine and cosine of the angles among q [nq], four at a time; nothing else is written.
+/// Sine and cosine of the angles among q [nq], four at a time: in the order of
+/// KinematicTree::turning, filled up to whole registers.
 void Sines(const KinematicTree& tree, const double* q, double* sine, double* cosine) noexcept;
 
 /// The rotation of a unit quaternion (w, x, y, z).

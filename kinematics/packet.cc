@@ -13,15 +13,21 @@ Packet WholePart(const Packet& x) {
   return (x + kPushOutFraction) - kPushOutFraction;
 }
 
+/// Out of line, so that the usual case needs no registers of the caller's.
+[[gnu::noinline, gnu::cold]] void SinCosLaneByLane(const Packet& angle, Packet* sine,
+                                                   Packet* cosine) {
+  const Packet a = angle;
+  *sine = FromLanes<Packet>([&](int k) { return std::sin(a[k]); });
+  *cosine = FromLanes<Packet>([&](int k) { return std::cos(a[k]); });
+}
+
 }  // namespace
 
 // Reduction to |r| <= pi/4 with pi/2 in three parts (the first two of 33 bits, so that their
 // multiples are exact), then the polynomials of least error. Constants: fdlibm, Sun Microsystems.
 void SinCos(const Packet& angle, Packet* sine, Packet* cosine) {
   if (!AllLanes(abs(angle) <= Packet(kLargestAngle))) {
-    *sine = FromLanes<Packet>([&](int k) { return std::sin(angle[k]); });
-    *cosine = FromLanes<Packet>([&](int k) { return std::cos(angle[k]); });
-    return;
+    return SinCosLaneByLane(angle, sine, cosine);
   }
   const Packet quarters = WholePart(angle * 6.36619772367581382433e-01);
   const Packet r =

@@ -50,10 +50,11 @@ inline Four Turned(const Axes& X, const Four& a) noexcept {
 /// R'a.
 inline Four TurnedBack(const Axes& X, const Four& a) noexcept {
   const Four x = X.x * a, y = X.y * a, z = X.z * a, zero{};
-  const Four xy =
-      __builtin_shufflevector(x, y, 0, 4, 2, 6) + __builtin_shufflevector(x, y, 1, 5, 3, 7);
-  const Four z0 =
-      __builtin_shufflevector(z, zero, 0, 4, 2, 4) + __builtin_shufflevector(z, zero, 1, 4, 3, 4);
+  // By halves of registers: one instruction each.
+  const auto sums = [](const Four& a, const Four& b) {
+    return __builtin_shufflevector(a, b, 0, 4, 2, 6) + __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  };
+  const Four xy = sums(x, y), z0 = sums(z, zero);
   return __builtin_shufflevector(xy, z0, 0, 1, 4, 5) + __builtin_shufflevector(xy, z0, 2, 3, 6, 7);
 }
 /// R A.
@@ -62,6 +63,9 @@ inline Axes Turned(const Axes& X, const Matrix3d& A, const Four& p) noexcept {
 }
 /// X_WB p_B.
 inline Four PointInWorld(const Axes& X, const Vector3d& p) noexcept {
+  return X.p + Turned(X, p);
+}
+inline Four PointInWorld(const Axes& X, const Four& p) noexcept {
   return X.p + Turned(X, p);
 }
 /// X_WB X_BC.

@@ -14,6 +14,11 @@ Axes TurnedAboutZ(const Axes& X, double sine, double cosine) {
   return {cosine * X.x + sine * X.y, cosine * X.y - sine * X.x, X.z, X.p};
 }
 
+/// A turn of 1 rad/s.
+Screw AxisThrough(const Four& p_WQ, const Four& axis) {
+  return {Cross(p_WQ, axis), axis};
+}
+
 /// Of a node in its parent, at the joints' rates v.
 Screw JointTwist(const TreeNode& node, const double* v, const ScrewWorkspace& ws) {
   if (node.v < 0) return {};
@@ -78,69 +83,51 @@ ScrewWorkspace::ScrewWorkspace(const KinematicTree& tree)
     : nodes(tree.nodes.size() + 1),
       S(tree.nv),
       loops(tree.loops.size()),
-      sine(tree.nq),
-      cosine(tree.nq) {
+      sine(PaddedSize(static_cast<int>(tree.turning.size()))),
+      cosine(sine) {
   for (size_t i = 0; i < tree.nodes.size(); ++i) nodes[i + 1].X_PF = AxesOf(tree.nodes[i].X_PF);
 }
 
 void ForwardKinematics(const KinematicTree& tree, const double* q, ScrewWorkspace* ws) noexcept {
   Sines(tree, q, ws->sine.data(), ws->cosine.data());
+  const double *sine = ws->sine.data(), *cosine = ws->cosine.data();
   Axes X;
   for (int i = 0; i < static_cast<int>(tree.nodes.size()); ++i) {
     const TreeNode& node = tree.nodes[i];
     if (node.parent != i - 1) X = ws->at(node.parent).X;  // else in registers
     const Axes& X_PF = ws->at(i).X_PF;
+    Screw* S = ws->S.data() + node.v;
     // What does not depend on the parent first: a chain waits for each of its nodes.
     switch (node.motion) {
       case NodeMotion::kFixed:
         X = X * X_PF;
         break;
       case NodeMotion::kRevolute:
-        X = X * TurnedAboutZ(X_PF, ws->sine[node.q], ws->cosine[node.q]);
+        X = X * TurnedAboutZ(X_PF, *sine++, *cosine++);
+        *S = AxisThrough(X.p, X.z);
         break;
       case NodeMotion::kPrismatic:
         X = X * X_PF;
         X.p += q[node.q] * X.z;
+        *S = {X.z, Four{}};
         break;
       case NodeMotion::kScrew:
-        X = X * TurnedAboutZ(X_PF, ws->sine[node.q], ws->cosine[node.q]);
+        X = X * TurnedAboutZ(X_PF, *sine++, *cosine++);
         X.p += (node.pitch * q[node.q]) * X.z;
+        *S = AxisThrough(X.p, X.z);
+        S->linear += node.pitch * X.z;
         break;
       case NodeMotion::kSpherical: {
         const Matrix3d R_FM = RotationOf(q + node.q);
-        X = X * X_PF;
-        X = Turned(X, node.reversed ? Matrix3d(R_FM.transpose()) : R_FM, X.p);
+        const Axes F = X * X_PF;
+        X = Turned(F, node.reversed ? Matrix3d(R_FM.transpose()) : R_FM, F.p);
+        // Reversed, v is the rate of the parent in axes that are fixed there.
+        const Axes M = node.reversed ? Axes{-F.x, -F.y, -F.z, F.p} : X;
+        for (const Four* axis : {&M.x, &M.y, &M.z}) *S++ = AxisThrough(X.p, *axis);
         break;
       }
     }
     ws->at(i).X = X;
-  }
-}
-
-void JointScrews(const KinematicTree& tree, ScrewWorkspace* ws) noexcept {
-  const ScrewWorkspace::Node* state = ws->nodes.data();
-  for (const TreeNode& node : tree.nodes) {
-    const Axes& X = (++state)->X;
-    switch (node.motion) {
-      case NodeMotion::kFixed:
-        break;
-      case NodeMotion::kRevolute:
-        ws->S[node.v] = {Cross(X.p, X.z), X.z};
-        break;
-      case NodeMotion::kPrismatic:
-        ws->S[node.v] = {X.z, Four{}};
-        break;
-      case NodeMotion::kScrew:
-        ws->S[node.v] = {Cross(X.p, X.z) + node.pitch * X.z, X.z};
-        break;
-      case NodeMotion::kSpherical: {
-        // Reversed, v is the rate of the parent in axes that are fixed there.
-        const Axes M = node.reversed ? Turned(ws->at(node.parent).X, -node.X_PF.R, X.p) : X;
-        Screw* S = &ws->S[node.v];
-        for (const Four* axis : {&M.x, &M.y, &M.z}) *S++ = {Cross(X.p, *axis), *axis};
-        break;
-      }
-    }
   }
 }
 
@@ -155,11 +142,15 @@ void ForwardVelocities(const KinematicTree& tree, const double* v, ScrewWorkspac
 }
 
 void VelocityProducts(const KinematicTree& tree, ScrewWorkspace* ws) noexcept {
-  ScrewWorkspace::Node* state = ws->nodes.data();
-  for (const TreeNode& node : tree.nodes) {
+  Screw A = ws->at(-1).A;
+  for (int i = 0; i < static_cast<int>(tree.nodes.size()); ++i) {
+    const ScrewWorkspace::Node& parent = ws->at(tree.nodes[i].parent);
+    ScrewWorkspace::Node& s = ws->at(i);
+    if (tree.nodes[i].parent != i - 1) A = parent.A;
     // Joint axes go with the parent, or with the node, which is the same: V_P x (V - V_P).
-    ++state;
-    state->c = CarriedTwist(ws->at(node.parent).V, state->V);
+    s.c = CarriedTwist(parent.V, s.V);
+    A += s.c;
+    s.A = A;
   }
 }
 
@@ -170,7 +161,7 @@ void ForwardAccelerations(const KinematicTree& tree, const double* vdot,
     const TreeNode& node = tree.nodes[i];
     if (node.parent != i - 1) A = ws->at(node.parent).A;
     A += ws->at(i).c;
-    if (vdot != nullptr) A += JointTwist(node, vdot, *ws);
+    A += JointTwist(node, vdot, *ws);
     ws->at(i).A = A;
   }
 }
@@ -214,20 +205,20 @@ void LoopWrenches(const KinematicTree& tree, const double* row_scale, ScrewWorks
   }
 }
 
-void LoopBias(const KinematicTree& tree, const ScrewWorkspace& ws, int loop_index,
+void LoopBias(const KinematicTree& tree, const ScrewWorkspace& ws, int loop_index, double s,
               double* bias) noexcept {
   const Loop& loop = tree.loops[loop_index];
-  const LoopScrews& s = ws.loops[loop_index];
+  const LoopScrews& screws = ws.loops[loop_index];
   const JointPlacement& place = tree.placements[loop.joint];
   const ScrewWorkspace::Node &A = ws.at(place.first_node), &B = ws.at(place.second_node);
   // The rate of M's twist in F as an observer on F sees it.
   const Screw V_rel = B.V - A.V;
-  const Screw rate = B.A - A.A - CarriedTwist(A.V, V_rel);
-  for (int k = 0; k < loop.rows; ++k) bias[k] = Power(s.rows[k], rate);
+  const Screw rate = s * (B.A - A.A - CarriedTwist(A.V, V_rel));
+  for (int k = 0; k < loop.rows; ++k) bias[k] = Power(screws.rows[k], rate);
   if (loop.type == JointType::kUniversal) {
     // n = y_M x x_F turns in F.
-    const Four y_M = Turned(s.F, s.state.R_FM.col(1));
-    bias[3] += Dot(Cross(Cross(V_rel.angular, y_M), s.F.x), V_rel.angular);
+    const Four y_M = Turned(screws.F, screws.state.R_FM.col(1));
+    bias[3] += s * Dot(Cross(Cross(V_rel.angular, y_M), screws.F.x), V_rel.angular);
   }
 }
 

@@ -36,21 +36,19 @@ struct ScrewWorkspace {
   std::vector<Node> nodes;
   std::vector<Screw> S;  ///< twist of each unit velocity [nv]
   std::vector<LoopScrews> loops;
-  std::vector<double> sine, cosine;  ///< of the coordinates [nq]
+  std::vector<double> sine, cosine;  ///< of KinematicTree::turning, see Sines
 
   const Node& at(int node) const { return nodes[node + 1]; }
   Node& at(int node) { return nodes[node + 1]; }
 };
 
-/// Poses of all nodes; writes X.
+/// Poses of all nodes, and the joints' twists; writes X and S.
 void ForwardKinematics(const KinematicTree& tree, const double* q, ScrewWorkspace* ws) noexcept;
-/// The joints' twists. Needs X; writes S.
-void JointScrews(const KinematicTree& tree, ScrewWorkspace* ws) noexcept;
 /// V from v [nv]. Needs S.
 void ForwardVelocities(const KinematicTree& tree, const double* v, ScrewWorkspace* ws) noexcept;
-/// Needs V; writes c.
+/// Needs V; writes c, and A for v' = 0.
 void VelocityProducts(const KinematicTree& tree, ScrewWorkspace* ws) noexcept;
-/// A from v' [nv], or for v' = 0 from nullptr. Needs S and c.
+/// A from v' [nv]. Needs S and c.
 void ForwardAccelerations(const KinematicTree& tree, const double* vdot,
                           ScrewWorkspace* ws) noexcept;
 
@@ -66,8 +64,9 @@ void LoopErrors(const KinematicTree& tree, ScrewWorkspace* ws) noexcept;
 /// Writes `rows`, the rows of C as wrenches: C_kv = +-rows[k] . S_v for the velocities around the
 /// loop. `row_scale` [tree.rows] as LoopRowScale. Needs LoopErrors.
 void LoopWrenches(const KinematicTree& tree, const double* row_scale, ScrewWorkspace* ws) noexcept;
-/// C' v of one loop, in the scale of its rows: they give C v' + bias = 0. Needs
-/// LoopWrenches, V and A for v' = 0; writes Loop::rows entries.
-void LoopBias(const KinematicTree& tree, const ScrewWorkspace& ws, int loop, double* bias) noexcept;
+/// s dC/dt v of one loop, in the scale of its rows. Needs LoopWrenches, V and A for v' = 0; writes
+/// Loop::rows entries.
+void LoopBias(const KinematicTree& tree, const ScrewWorkspace& ws, int loop, double s,
+              double* bias) noexcept;
 
 }  // namespace vmech

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "vmech/kinematics/kinematic_tree.h"
+#include "vmech/solvers/four.h"
 
 namespace vmech {
 
@@ -38,12 +39,15 @@ struct TreeWorkspace {
   /// Columns of C, loop after loop in the order of Loop::columns; the first `rows` entries count.
   std::vector<Vector6<T>> loop_columns;
   std::vector<int> first_column;  ///< of each loop in loop_columns
-  std::vector<T> sine, cosine;    ///< of the coordinates [nq]
+  std::vector<T> sine, cosine;    ///< of KinematicTree::turning, see Sines
 };
 
 template <typename T>
 TreeWorkspace<T>::TreeWorkspace(const KinematicTree& tree)
-    : nodes(tree.nodes.size()), loops(tree.loops.size()), sine(tree.nq), cosine(tree.nq) {
+    : nodes(tree.nodes.size()),
+      loops(tree.loops.size()),
+      sine(PaddedSize(static_cast<int>(tree.turning.size()))),
+      cosine(sine) {
   int columns = 0;
   for (const Loop& loop : tree.loops) {
     first_column.push_back(columns);

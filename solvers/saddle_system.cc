@@ -30,6 +30,37 @@ void Gram(double w, const double* B, int rows, int size, double* G) noexcept {
   }
 }
 
+/// A += B'B, B [8, n].
+template <int kSize>
+void AddGramOfEight(const double* B, int size, double* A) noexcept {
+  const int n = kSize > 0 ? kSize : size;
+  for (int j = 0; j < n; ++j) {
+    A[j * n + j] += DotOfFours(B + j * 8, B + j * 8, 8);
+    for (int i = j + 1; i < n; ++i) {
+      A[i * n + j] = A[j * n + i] += DotOfFours(B + i * 8, B + j * 8, 8);
+    }
+  }
+}
+
+/// L of A + G.
+template <int kSize>
+bool FactorSum(const double* A, const double* G, int size, double* L) noexcept {
+  return FactorLdlt<kSize>(
+      size, [&](int k) { return A[k] + G[k]; }, L);
+}
+
+/// mu = w (C t - s d).
+template <int kSize, int kRows>
+void Multiply(double w, const double* C, int rows, const double* t, double s, const double* d,
+              int size, double* mu) noexcept {
+  const int n = kSize > 0 ? kSize : size, m = kRows > 0 ? kRows : rows;
+  for (int i = 0; i < m; i += 4) {
+    Four sum = -s * LoadFour(d + i);
+    for (int j = 0; j < n; ++j) sum += t[j] * LoadFour(C + j * m + i);
+    StoreFour(w * sum, mu + i);
+  }
+}
+
 /// y += A x, for sizes not known here: four rows at a time, which stay in registers.
 void AddProduct(const double* A, const double* x, int n, double* y) noexcept {
   int i = 0;
@@ -87,16 +118,18 @@ void Iterate(const double* L, const double* A, const double* b, const double* ri
 }  // namespace
 
 struct SaddleSystem::Kernels {
-  decltype(&vmech::Gram<0, 0>) gram, gram_of_eight;
-  decltype(&FactorLdlt<0>) factor;
+  decltype(&Gram<0, 0>) gram;
+  decltype(&AddGramOfEight<0>) add_gram_of_eight;
+  decltype(&FactorSum<0>) factor_sum;
   decltype(&SolveLdlt<0>) solve;
   decltype(&AddTransposed<0, 0>) add_transposed;
+  decltype(&Multiply<0, 0>) multiply;
   decltype(&Iterate<0>) iterate;
 
   template <int kSize, int kRows>
   static constexpr Kernels Of() {
-    return {vmech::Gram<kSize, kRows>, vmech::Gram<kSize, 8>,       FactorLdlt<kSize>,
-            SolveLdlt<kSize>,          AddTransposed<kSize, kRows>, Iterate<kSize>};
+    return {Gram<kSize, kRows>,          AddGramOfEight<kSize>,  FactorSum<kSize>, SolveLdlt<kSize>,
+            AddTransposed<kSize, kRows>, Multiply<kSize, kRows>, Iterate<kSize>};
   }
   template <int kRows>
   static const Kernels& ForSize(int size) noexcept {
@@ -126,9 +159,7 @@ void SaddleSystem::SetConstraints(const MatrixXd& C) noexcept {
 }
 
 bool SaddleSystem::Factor(const MatrixXd& A) noexcept {
-  const int n = size();
-  for (int i = 0; i < n * n; ++i) L_.data()[i] = A.data()[i] + G_.data()[i];
-  return kernels_.factor(n, L_.data());
+  return kernels_.factor_sum(A.data(), G_.data(), size(), L_.data());
 }
 
 void SaddleSystem::Solve(const MatrixXd& A, const MatrixXd& C, const VectorXd& b, const VectorXd& d,
@@ -142,10 +173,8 @@ void SaddleSystem::Solve(const MatrixXd& A, const MatrixXd& C, const VectorXd& b
 
 void SaddleSystem::TakeMultipliers(const MatrixXd& C, const VectorXd& d,
                                    VectorXd* mu) const noexcept {
-  for (int i = 0; i < equations_; ++i) (*mu)[i] = -kSolves * weight_ * d[i];
-  for (int j = 0; j < size(); ++j) {
-    AddScaled(weight_ * total_[j], C.data() + j * equations_, 0, equations_, mu->data());
-  }
+  kernels_.multiply(weight_, C.data(), equations_, total_.data(), kSolves, d.data(), size(),
+                    mu->data());
 }
 
 void SaddleSystem::Approach(const MatrixXd& C, const VectorXd& b, const VectorXd& d,
@@ -158,9 +187,9 @@ void SaddleSystem::Approach(const MatrixXd& C, const VectorXd& b, const VectorXd
   kernels_.solve(L_.data(), n, x->data());
 }
 
-void SaddleSystem::Gram(const MatrixXd& B, MatrixXd* G) const noexcept {
+void SaddleSystem::AddGram(const MatrixXd& B, MatrixXd* A) const noexcept {
   assert(B.rows() == 8);
-  kernels_.gram_of_eight(1, B.data(), 8, size(), G->data());
+  kernels_.add_gram_of_eight(B.data(), size(), A->data());
 }
 
 }  // namespace vmech

@@ -41,8 +41,8 @@ class SaddleSystem {
   /// and for b = 0 the smallest such x in the metric of A.
   void Approach(const MatrixXd& C, const VectorXd& b, const VectorXd& d, VectorXd* x) noexcept;
 
-  /// G = B'B, B [8, unknowns]: for an A that is made so.
-  void Gram(const MatrixXd& B, MatrixXd* G) const noexcept;
+  /// A += B'B, B [8, unknowns]: for an A that is made so.
+  void AddGram(const MatrixXd& B, MatrixXd* A) const noexcept;
 
  private:
   struct Kernels;

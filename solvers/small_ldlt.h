@@ -55,14 +55,17 @@ inline void Unrolled(const Body& body) noexcept {
   (std::make_integer_sequence<int, kCount>());
 }
 
-/// The lower triangle of a symmetric matrix becomes unit L, with 1/D on the diagonal and, where
-/// the size is not known here, L' above. False if it is not positive definite.
-template <int kSize>
-[[nodiscard]] bool FactorLdlt(int size, double* L) noexcept {
+/// A symmetric matrix, of which only the lower triangle is asked for, `entry(k)` its k-th number:
+/// unit L, with 1/D on the diagonal and, where the size is not known here, L' above. False if it is
+/// not positive definite.
+template <int kSize, typename Entry>
+[[nodiscard]] bool FactorLdlt(int size, const Entry& entry, double* L) noexcept {
   if constexpr (kSize > 0) {
     constexpr int n = kSize;
     double a[n * n];
-    std::memcpy(a, L, sizeof(a));
+    Unrolled<n>([&](auto j) {
+      Unrolled<n - j>([&](auto below) { a[j * n + j + below] = entry(j * n + j + below); });
+    });
     bool positive = true;
     Unrolled<n>([&](auto j) {
       positive &= a[j * n + j] > 0;
@@ -75,10 +78,13 @@ template <int kSize>
         a[j * n + k] = scaled;
       });
     });
-    std::memcpy(L, a, sizeof(a));
+    Unrolled<n>([&](auto j) {
+      Unrolled<n - j>([&](auto below) { L[j * n + j + below] = a[j * n + j + below]; });
+    });
     return positive;
   } else {
     const int n = size;
+    for (int k = 0; k < n * n; ++k) L[k] = entry(k);
     for (int j = 0; j < n; ++j) {
       double* const L_j = L + j * n;
       if (!(L_j[j] > 0)) return false;
@@ -92,6 +98,13 @@ template <int kSize>
     }
     return true;
   }
+}
+
+/// In place.
+template <int kSize>
+[[nodiscard]] bool FactorLdlt(int size, double* A) noexcept {
+  return FactorLdlt<kSize>(
+      size, [&](int k) { return A[k]; }, A);
 }
 
 /// x = (L D L')^-1 x.

@@ -103,14 +103,21 @@ void HeldTick::Resolve() {
 
 /// The arm of the samples exerts nothing.
 void HeldTick::ObserveOn(const MasterState& state) {
+  if (!tick_->TakesObserved()) return;
   observer_->Update(state, Vector6d::Zero(), 1);
   registration_.TakeHandInWorld(observer_->hand_D(), &observed_);
 }
 
 void HeldTick::StepOn(const MasterState& state) {
-  TickInput input = FreshInput(registration_.HandInWorld(state.X_DH), device_.period);
+  TickInput input;
+  input.fresh = true;
+  input.elapsed = device_.period;
   input.state = &state;
-  input.observed = &observed_;
+  if (tick_->TakesObserved()) {
+    input.observed = &observed_;
+  } else {
+    input.X_WH = registration_.HandInWorld(state.X_DH);
+  }
   wanted_ = tick_->Step(input, channels_);
 }
 
