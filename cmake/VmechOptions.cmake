@@ -77,6 +77,12 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # g++ 12 sees 32-byte stores into 3-vectors in code of Eigen's that is never reached.
   target_compile_options(vmech_kernel_settings INTERFACE -Wno-array-bounds -Wno-stringop-overflow)
 endif()
+if(VMECH_ARCH MATCHES "x86-64-v[34]" AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU"
+   AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 12)
+  # Copies in the registers that are computed with: one that was copied by halves is waited for
+  # where it is loaded as a whole.
+  target_compile_options(vmech_kernel_settings INTERFACE -mmove-max=256 -mstore-max=256)
+endif()
 
 # vmech_inline_kernels: for modules whose kernels are many small functions on 3-vectors, which g++
 # would rather call than inline: 15 to 20 % of the time of a pose goes into passing them through

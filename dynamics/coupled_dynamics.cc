@@ -356,7 +356,7 @@ void CoupledDynamics::TakeInertia() noexcept {
 
 void CoupledDynamics::TakeVelocities() noexcept {
   pose_.SetVelocities(v_);
-  for (int i = 0; i < tree_.nv; ++i) momenta_[i] = Dot(&M_(0, i), v_.data(), tree_.nv);
+  system_.Product(M_, v_, &momenta_);
   kinetic_ = 0.5 * Dot(momenta_.data(), v_.data(), tree_.nv);
 }
 
@@ -376,11 +376,12 @@ void CoupledDynamics::KeepEnergy(double before) noexcept {
 
 /// e1, and the energy of the coupling.
 void CoupledDynamics::TakeError() noexcept {
-  e1_ = HandError(pose_.grasp_axes(), hand_.X);
+  const Screw e1 = HandError(pose_.grasp_axes(), hand_.X);
+  e1_ = e1;
   if (!coupled_) return;
-  const Screw pull = Scaled(coupling_.stiffness, e1_);
-  spring_ = SpringEnergy(e1_.linear, pull.linear, coupling_.max_force) +
-            SpringEnergy(e1_.angular, pull.angular, coupling_.max_moment);
+  const Screw pull = Scaled(coupling_.stiffness, e1);
+  spring_ = SpringEnergy(e1.linear, pull.linear, coupling_.max_force) +
+            SpringEnergy(e1.angular, pull.angular, coupling_.max_moment);
 }
 
 double CoupledDynamics::closure() const noexcept {

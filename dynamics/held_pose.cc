@@ -55,10 +55,9 @@ void HeldPose::SetJacobians() noexcept {
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
     const Loop& loop = tree_.loops[l];
     for (const LoopColumn& c : loop.columns) {
+      const Screw S = c.sign * ws_.S[c.v];
       double* column = &C_(loop.row, c.v);
-      for (int k = 0; k < loop.rows; ++k) {
-        column[k] = c.sign * Power(ws_.loops[l].rows[k], ws_.S[c.v]);
-      }
+      for (int k = 0; k < loop.rows; ++k) column[k] = Power(ws_.loops[l].rows[k], S);
     }
   }
 }

@@ -40,7 +40,7 @@ class HeldPose {
   Screw Twist(const VectorXd& v) const noexcept;                 ///< J v
   void AddForces(const Screw& w, VectorXd* tau) const noexcept;  ///< tau += J'w
 
-  /// M [nv, nv].
+  /// M [nv, nv], which was zero in the beginning.
   void TakeMassMatrix(MatrixXd* M) noexcept;
 
   /// Takes v [nv].

@@ -41,18 +41,48 @@ void HandOn(const KinematicTree& tree, ScrewWorkspace* ws, double* tau) {
   ws->nodes[0].F += sum;
 }
 
+/// Writes the composites.
+void CarryInertias(const KinematicTree& tree, ScrewInertias* inertias) {
+  ScrewInertia sum;  // in registers, as in HandOn
+  for (int i = static_cast<int>(tree.nodes.size()); i-- > 0;) {
+    sum += inertias->bodies[i + 1];
+    if (inertias->carries[i + 1]) sum += inertias->carried[i + 1];
+    inertias->carries[i + 1] = false;
+    inertias->composites[i + 1] = sum;
+    const int parent = tree.nodes[i].parent;
+    if (parent == i - 1) continue;
+    ScrewInertia& carried = inertias->carried[parent + 1];
+    if (!inertias->carries[parent + 1]) carried = {};
+    inertias->carries[parent + 1] = true;
+    carried += sum;
+    sum = {};
+  }
+}
+
 }  // namespace
 
 ScrewInertias::ScrewInertias(const KinematicTree& tree)
     : in_node(tree.nodes.size() + 1),
       bodies(in_node.size()),
+      composites(bodies),
       carried(bodies),
       carries(bodies.size()) {
-  for (size_t i = 0; i < tree.nodes.size(); ++i) {
+  const int n = tree.nv;
+  for (int i = 0; i < static_cast<int>(tree.nodes.size()); ++i) {
     const TreeNode& node = tree.nodes[i];
     const Matrix3d& I = node.I_Bcm;
     in_node[i + 1] = {node.mass, FourOf(node.p_BoBcm), FourOf(I.col(0)), FourOf(I.col(1)),
                       FourOf(I.col(2))};
+    for (int v = node.v; v < node.v + VelocitiesOf(node.motion); ++v) {
+      const auto add = [&](int u) { entries.push_back({i + 1, v, u, v * n + u, u * n + v}); };
+      add(v);
+      for (int j = i; j >= 0; j = tree.nodes[j].parent) {
+        const TreeNode& below = tree.nodes[j];
+        for (int u = below.v; u < below.v + VelocitiesOf(below.motion); ++u) {
+          if (u < v) add(u);
+        }
+      }
+    }
   }
 }
 
@@ -70,28 +100,12 @@ void BodyInertias(const KinematicTree& tree, const ScrewWorkspace& ws,
 
 void CompositeMassMatrix(const KinematicTree& tree, const ScrewWorkspace& ws,
                          ScrewInertias* inertias, MatrixXd* M) noexcept {
-  std::fill_n(M->data(), M->size(), 0.0);
-  ScrewInertia sum;  // in registers, as in HandOn
-  for (int i = static_cast<int>(tree.nodes.size()); i-- > 0;) {
-    const TreeNode& node = tree.nodes[i];
-    sum += inertias->bodies[i + 1];
-    if (inertias->carries[i + 1]) sum += inertias->carried[i + 1];
-    inertias->carries[i + 1] = false;
-    for (int v = node.v; v < node.v + VelocitiesOf(node.motion); ++v) {
-      const Screw momentum = sum * ws.S[v];
-      for (int j = i; j >= 0; j = tree.nodes[j].parent) {
-        const TreeNode& below = tree.nodes[j];
-        for (int u = below.v; u < below.v + VelocitiesOf(below.motion); ++u) {
-          (*M)(u, v) = (*M)(v, u) = Power(momentum, ws.S[u]);
-        }
-      }
-    }
-    if (node.parent == i - 1) continue;
-    ScrewInertia& parent = inertias->carried[node.parent + 1];
-    if (!inertias->carries[node.parent + 1]) parent = {};
-    inertias->carries[node.parent + 1] = true;
-    parent += sum;
-    sum = {};
+  CarryInertias(tree, inertias);
+  double* const m = M->data();
+  Screw momentum;
+  for (const auto& [node, v, u, above, below] : inertias->entries) {
+    if (u == v) momentum = inertias->composites[node] * ws.S[v];  // the first of v's
+    m[above] = m[below] = Power(momentum, ws.S[u]);
   }
 }
 

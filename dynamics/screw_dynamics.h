@@ -21,9 +21,17 @@ struct ScrewInertias {
   };
   std::vector<Body> in_node;         ///< of the tree
   std::vector<ScrewInertia> bodies;  ///< about Wo
-  // CompositeMassMatrix's own: what other nodes than the next have handed to a node, if any have.
-  std::vector<ScrewInertia> carried;
+
+  // CompositeMassMatrix's own: each node with all that it carries; what other nodes than the next
+  // have handed to a node, if any have; and the places of M that are not zero, velocity by velocity
+  // with those on the way to the ground.
+  std::vector<ScrewInertia> composites, carried;
   std::vector<char> carries;
+  struct Entry {
+    int node, v, u;
+    int above, below;  ///< (u, v) and (v, u) in M
+  };
+  std::vector<Entry> entries;
 };
 
 /// Weight is a ground that falls upwards: the ground's A, once.
@@ -37,7 +45,8 @@ void BodyInertias(const KinematicTree& tree, const ScrewWorkspace& ws,
 ///
 ///   M_ij = S_j' I_i^c S_i,   j on the way from i to the ground.
 ///
-/// Needs S and BodyInertias. O(n depth).
+/// Needs S and BodyInertias, and an M that was zero in the beginning: writes what joints of one
+/// branch have with each other. O(n depth).
 void CompositeMassMatrix(const KinematicTree& tree, const ScrewWorkspace& ws,
                          ScrewInertias* inertias, MatrixXd* M) noexcept;
 

@@ -25,8 +25,9 @@ struct PostureOptions {
 ///
 /// n_k a basis of the null space of J, orthogonal in the metric M. The sum is what the dynamically
 /// consistent inverse Jbar = M^-1 J' (J M^-1 J')^-1 [Khatib 1987] leaves of tau_p, (1 - J' Jbar')
-/// tau_p: it does not accelerate the handle, since J M^-1 M n_k = 0. Joint velocities come from
-/// Kalman filters. No allocation after construction.
+/// tau_p: it does not accelerate the handle, since J M^-1 M n_k = 0. The n_k hold until a joint has
+/// moved by a thousandth of a radian or metre, and the handle gets no more than about that part of
+/// tau_p. Joint velocities come from Kalman filters. No allocation after construction.
 class ArmTorques {
  public:
   /// `resolution` of the encoders [rad]. @throws as Validate and ArmModel.
@@ -39,13 +40,17 @@ class ArmTorques {
                MasterCommand* command) noexcept VMECH_NONBLOCKING;
 
  private:
+  void FindFreeMotions() noexcept;
+
   PostureOptions options_;
   ArmModel arm_;
   JointArray posture_;  // the nominal one
   KalmanEstimator<JointArray> velocity_;
   JointArray posture_torque_ = JointArray::Zero(), torque_ = JointArray::Zero();
   HandleNullSpace null_space_;
-  std::array<JointArray, kMaxArmJoints> motions_, momenta_;  // n_k and M n_k
+  JointArray found_at_;  // q of the free motions
+  int free_motions_ = 0;
+  std::array<JointArray, kMaxArmJoints> motions_, drives_;  // n_k and M n_k / (n_k' M n_k)
 };
 
 }  // namespace vmech

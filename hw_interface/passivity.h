@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vmech/hw_interface/device_info.h"
+#include "vmech/kinematics/screw.h"
 
 namespace vmech {
 
@@ -50,12 +51,11 @@ class PassivityController {
   void Reset() noexcept;
   /// Another mechanism or grasp from now on: the next stored energy is the new zero, debts stay.
   void Rebase() noexcept { knows_stored_ = false; }
-  /// What happened in the `elapsed` [s] > 0 since the last sample: the wrench at work, the handle's
-  /// displacement dX = [dp; dr], the virtual side's stored energy now.
-  void Observe(const Vector6d& F_Ho_D, const Vector6d& dX, double elapsed,
-               double stored_energy) noexcept;
-  /// The wrench that keeps the peace for the next period.
-  Vector6d Control(const Vector6d& F_Ho_D) const noexcept;
+  /// What happened in the `elapsed` [s] > 0 since the last sample: the wrench at work about Ho, the
+  /// handle's displacement dX = [dp; dr], the virtual side's stored energy now.
+  void Observe(const Screw& F_Ho_D, const Screw& dX, double elapsed, double stored_energy) noexcept;
+  /// Makes of a wrench the one that keeps the peace for the next period. True if it is another.
+  bool Control(Screw* F_Ho_D) const noexcept;
 
   double energy() const noexcept { return energy_; }  ///< E [J], at most the credit
 
@@ -63,9 +63,9 @@ class PassivityController {
   PassivityOptions options_;
   double period_;
   double max_damping_;  // alpha [N s/m]
-  Vector6d weight_;
-  Vector6d own_damping_;  // b
-  Vector6d V_ = Vector6d::Zero(), mean_V_ = Vector6d::Zero();
+  Screw weight_;
+  Screw own_damping_;  // b
+  Screw V_, mean_V_;
   double energy_ = 0;
   double stored_ = 0;
   bool knows_stored_ = false;

@@ -14,8 +14,13 @@ bool IsLatched(ForceOff cause) {
   return cause >= ForceOff::kEmergencyStop;
 }
 
-bool IsFinite(const MasterState& state) {
-  return state.X_DH.p.allFinite() && state.X_DH.R.allFinite();
+bool IsFinite(const Four& a) {
+  return std::isfinite(a[0] + a[1] + a[2]);
+}
+
+bool IsFinite(const Posed& X_DH) {
+  const Axes X = AxesOf(X_DH);
+  return IsFinite(X.x + X.y + X.z + X.p);
 }
 
 SafetyOptions Completed(SafetyOptions options, const DeviceInfo& info) {
@@ -33,8 +38,8 @@ SafetyOptions Completed(SafetyOptions options, const DeviceInfo& info) {
 }
 
 /// The factor that brings a pair of vectors within a pair of lengths; at most 1.
-double Shrink(const Vector6d& F, double force, double moment) {
-  const double f2 = F.head<3>().squaredNorm(), m2 = F.tail<3>().squaredNorm();
+double Shrink(const Screw& F, double force, double moment) {
+  const double f2 = Dot(F.linear, F.linear), m2 = Dot(F.angular, F.angular);
   double scale = 1;
   if (f2 > force * force) scale = force / std::sqrt(f2);
   if (m2 > moment * moment) scale = std::min(scale, moment / std::sqrt(m2));
@@ -60,10 +65,7 @@ SafetyFilter::SafetyFilter(const SafetyOptions& options, const DeviceInfo& info)
     : options_(Completed(options, info)),
       period_(info.period),
       delay_(info.delay),
-      passivity_(options.passivity, info) {
-  sent_.fill(Vector6d::Zero());
-  withheld_.fill(Vector6d::Zero());
-}
+      passivity_(options.passivity, info) {}
 
 void SafetyFilter::Restart() noexcept {
   opened_for_ = 0;
@@ -72,15 +74,14 @@ void SafetyFilter::Restart() noexcept {
 
 void SafetyFilter::Rearm() noexcept {
   latched_ = ForceOff::kNone;
-  smooth_V_.setZero();
+  smooth_V_ = {};
   Restart();
 }
 
 SafetyOutput SafetyFilter::Apply(const SafetyInput& input) noexcept VMECH_NONBLOCKING {
   SafetyOutput out;
   out.sequence = ++counters_.ticks;
-  sent_[out.sequence % kMemory].setZero();
-  withheld_[out.sequence % kMemory].setZero();
+  sent_[out.sequence % kMemory] = withheld_[out.sequence % kMemory] = {};
   out.off = Gate(input);
   if (out.off == ForceOff::kNone) {
     if (!open_) Restart();
@@ -95,16 +96,17 @@ SafetyOutput SafetyFilter::Apply(const SafetyInput& input) noexcept VMECH_NONBLO
   out.energy = passivity_.energy();
   if (!open_) {
     ++counters_.off;
-    last_.setZero();
+    last_ = {};
     return out;
   }
-  out.F_Ho_D = input.F_Ho_D;
-  Ramp(&out);
-  Damp(&out);
-  Clamp(&out);
-  Slew(&out);
+  Screw F = ScrewOf(input.F_Ho_D);
+  Ramp(&F, &out);
+  Damp(&F, &out);
+  Clamp(&F, &out);
+  Slew(&F, &out);
+  out.F_Ho_D = Vector6Of(F);
   for (int i = 0; i < kSafetyStages; ++i) counters_.stages[i] += (out.stages >> i) & 1;
-  sent_[out.sequence % kMemory] = last_ = out.F_Ho_D;
+  sent_[out.sequence % kMemory] = last_ = F;
   return out;
 }
 
@@ -120,7 +122,9 @@ ForceOff SafetyFilter::Gate(const SafetyInput& input) noexcept {
   if (input.io == IoStatus::kDeviceFault || input.lifecycle == Lifecycle::kFault) {
     return ForceOff::kDeviceFault;
   }
-  if (!input.F_Ho_D.allFinite() || !IsFinite(*input.state) || !std::isfinite(input.stored_energy)) {
+  const Screw F = ScrewOf(input.F_Ho_D);
+  if (!IsFinite(F.linear + F.angular) || !IsFinite(input.state->X_DH) ||
+      !std::isfinite(input.stored_energy)) {
     return ForceOff::kNonFinite;
   }
   if (missing_ > options_.hold_periods) return ForceOff::kStale;
@@ -135,18 +139,18 @@ void SafetyFilter::Observe(const SafetyInput& input) noexcept {
   if (has_pose_ && state.sequence == last_sequence_) return;
   const Axes X = AxesOf(state.X_DH);
   if (has_pose_) {
-    const Vector6d dX = Vector6Of(HandError(X_last_, X));
+    const Screw dX = HandError(X_last_, X);
     const double elapsed = static_cast<double>(state.sequence - last_sequence_) * period_;
     // This tick's command is still to come. Somebody else carries what the soft start withholds.
     const std::uint64_t command = CommandAtWork(state, counters_.ticks - 1);
-    Vector6d wrench = ExertedBy(command, state);
+    Screw wrench = ExertedBy(command, state);
     if (command > 0) wrench += withheld_[command % kMemory];
     passivity_.Observe(wrench, dX, elapsed, input.stored_energy);
     constexpr double kSmoothing = 5e-3;  // [s]: single encoder steps do not trip
-    smooth_V_ += std::min(1.0, elapsed / kSmoothing) * (dX / elapsed - smooth_V_);
+    smooth_V_ += std::min(1.0, elapsed / kSmoothing) * ((1 / elapsed) * dX - smooth_V_);
   } else {
-    smooth_V_.setZero();
-    passivity_.Observe(Vector6d::Zero(), Vector6d::Zero(), period_, input.stored_energy);
+    smooth_V_ = {};
+    passivity_.Observe({}, {}, period_, input.stored_energy);
   }
   X_last_ = X;
   last_sequence_ = state.sequence;
@@ -154,7 +158,7 @@ void SafetyFilter::Observe(const SafetyInput& input) noexcept {
 }
 
 Vector6d SafetyFilter::WrenchAtWork(const MasterState& state) const noexcept {
-  return ExertedBy(CommandAtWork(state, counters_.ticks), state);
+  return Vector6Of(ExertedBy(CommandAtWork(state, counters_.ticks), state));
 }
 
 /// Its sequence; 0 if unknown. `latest` is that of the last command sent.
@@ -166,9 +170,9 @@ std::uint64_t SafetyFilter::CommandAtWork(const MasterState& state,
   return at_work <= latest && latest - at_work < kMemory ? at_work : 0;
 }
 
-Vector6d SafetyFilter::ExertedBy(std::uint64_t command, const MasterState& state) const noexcept {
-  if (state.valid & kSensesAppliedWrench) return state.applied_F_Ho_D;
-  return command > 0 ? sent_[command % kMemory] : Vector6d::Zero().eval();
+Screw SafetyFilter::ExertedBy(std::uint64_t command, const MasterState& state) const noexcept {
+  if (state.valid & kSensesAppliedWrench) return ScrewOf(state.applied_F_Ho_D);
+  return command > 0 ? sent_[command % kMemory] : Screw{};
 }
 
 ForceOff SafetyFilter::Trip() const noexcept {
@@ -179,39 +183,36 @@ ForceOff SafetyFilter::Trip() const noexcept {
   return ForceOff::kNone;
 }
 
-void SafetyFilter::Ramp(SafetyOutput* out) noexcept {
+void SafetyFilter::Ramp(Screw* F, SafetyOutput* out) noexcept {
   if (opened_for_ < options_.soft_start) {
     const double share = opened_for_ / options_.soft_start;
     if (options_.carried_start) {
-      const double within = Shrink(out->F_Ho_D, options_.max_force, options_.max_moment);
-      withheld_[out->sequence % kMemory] = (1 - share) * within * out->F_Ho_D;
+      const double within = Shrink(*F, options_.max_force, options_.max_moment);
+      withheld_[out->sequence % kMemory] = (1 - share) * within * *F;
     }
-    out->F_Ho_D *= share;
+    *F = share * *F;
     out->stages |= kRamped;
   }
   opened_for_ += period_;
 }
 
-void SafetyFilter::Damp(SafetyOutput* out) noexcept {
-  const Vector6d damped = passivity_.Control(out->F_Ho_D);
-  if (damped == out->F_Ho_D) return;
-  out->F_Ho_D = damped;
-  out->stages |= kDamped;
+void SafetyFilter::Damp(Screw* F, SafetyOutput* out) noexcept {
+  if (passivity_.Control(F)) out->stages |= kDamped;
 }
 
-void SafetyFilter::Clamp(SafetyOutput* out) noexcept {
-  const double scale = Shrink(out->F_Ho_D, options_.max_force, options_.max_moment);
+void SafetyFilter::Clamp(Screw* F, SafetyOutput* out) noexcept {
+  const double scale = Shrink(*F, options_.max_force, options_.max_moment);
   if (scale == 1) return;
-  out->F_Ho_D *= scale;
+  *F = scale * *F;
   out->stages |= kClamped;
 }
 
-void SafetyFilter::Slew(SafetyOutput* out) noexcept {
-  const Vector6d change = out->F_Ho_D - last_;
+void SafetyFilter::Slew(Screw* F, SafetyOutput* out) noexcept {
+  const Screw change = *F - last_;
   const double scale =
       Shrink(change, options_.force_slew * period_, options_.moment_slew * period_);
   if (scale == 1) return;
-  out->F_Ho_D = last_ + scale * change;
+  *F = last_ + scale * change;
   out->stages |= kSlewed;
 }
 

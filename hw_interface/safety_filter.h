@@ -117,12 +117,13 @@ class SafetyFilter {
   ForceOff Gate(const SafetyInput& input) noexcept;
   void Observe(const SafetyInput& input) noexcept;
   std::uint64_t CommandAtWork(const MasterState& state, std::uint64_t latest) const noexcept;
-  Vector6d ExertedBy(std::uint64_t command, const MasterState& state) const noexcept;
+  Screw ExertedBy(std::uint64_t command, const MasterState& state) const noexcept;
   ForceOff Trip() const noexcept;
-  void Ramp(SafetyOutput* out) noexcept;
-  void Damp(SafetyOutput* out) noexcept;
-  void Clamp(SafetyOutput* out) noexcept;
-  void Slew(SafetyOutput* out) noexcept;
+  // The stages that change the wrench of this tick.
+  void Ramp(Screw* F, SafetyOutput* out) noexcept;
+  void Damp(Screw* F, SafetyOutput* out) noexcept;
+  void Clamp(Screw* F, SafetyOutput* out) noexcept;
+  void Slew(Screw* F, SafetyOutput* out) noexcept;
 
   SafetyOptions options_;
   double period_, delay_;
@@ -135,9 +136,9 @@ class SafetyFilter {
   double opened_for_ = 0;  // [s]
   std::uint64_t last_sequence_ = 0;
   Axes X_last_;
-  Vector6d smooth_V_ = Vector6d::Zero();           // for the trip
-  Vector6d last_ = Vector6d::Zero();               // the last wrench that went out
-  std::array<Vector6d, kMemory> sent_, withheld_;  // by sequence
+  Screw smooth_V_;                              // for the trip
+  Screw last_;                                  // the last wrench that went out
+  std::array<Screw, kMemory> sent_, withheld_;  // by sequence
 };
 
 }  // namespace vmech

@@ -61,8 +61,10 @@ void Multiply(double w, const double* C, int rows, const double* t, double s, co
   }
 }
 
-/// y += A x, for sizes not known here: four rows at a time, which stay in registers.
-void AddProduct(const double* A, const double* x, int n, double* y) noexcept {
+/// y += A x, four rows at a time, which stay in registers.
+template <int kSize>
+void AddProduct(const double* A, const double* x, int size, double* y) noexcept {
+  const int n = kSize > 0 ? kSize : size;
   int i = 0;
   for (; i + 4 <= n; i += 4) {
     Four sum = LoadFour(y + i);
@@ -107,7 +109,7 @@ void Iterate(const double* L, const double* A, const double* b, const double* ri
     } else {
       std::copy_n(y, n, x);
       for (int i = 0; i < n; ++i) y[i] = right[i] - b[i];
-      AddProduct(A, x, n, y);
+      AddProduct<0>(A, x, n, y);
     }
     SolveLdlt<kSize>(L, n, y);
     for (int i = 0; i < n; ++i) total[i] += y[i];
@@ -124,12 +126,14 @@ struct SaddleSystem::Kernels {
   decltype(&SolveLdlt<0>) solve;
   decltype(&AddTransposed<0, 0>) add_transposed;
   decltype(&Multiply<0, 0>) multiply;
+  decltype(&AddProduct<0>) add_product;
   decltype(&Iterate<0>) iterate;
 
   template <int kSize, int kRows>
   static constexpr Kernels Of() {
-    return {Gram<kSize, kRows>,          AddGramOfEight<kSize>,  FactorSum<kSize>, SolveLdlt<kSize>,
-            AddTransposed<kSize, kRows>, Multiply<kSize, kRows>, Iterate<kSize>};
+    return {
+        Gram<kSize, kRows>,          AddGramOfEight<kSize>,  FactorSum<kSize>,  SolveLdlt<kSize>,
+        AddTransposed<kSize, kRows>, Multiply<kSize, kRows>, AddProduct<kSize>, Iterate<kSize>};
   }
   template <int kRows>
   static const Kernels& ForSize(int size) noexcept {
@@ -190,6 +194,11 @@ void SaddleSystem::Approach(const MatrixXd& C, const VectorXd& b, const VectorXd
 void SaddleSystem::AddGram(const MatrixXd& B, MatrixXd* A) const noexcept {
   assert(B.rows() == 8);
   kernels_.add_gram_of_eight(B.data(), size(), A->data());
+}
+
+void SaddleSystem::Product(const MatrixXd& A, const VectorXd& x, VectorXd* y) const noexcept {
+  std::fill_n(y->data(), size(), 0.0);
+  kernels_.add_product(A.data(), x.data(), size(), y->data());
 }
 
 }  // namespace vmech

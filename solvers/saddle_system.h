@@ -41,8 +41,11 @@ class SaddleSystem {
   /// and for b = 0 the smallest such x in the metric of A.
   void Approach(const MatrixXd& C, const VectorXd& b, const VectorXd& d, VectorXd* x) noexcept;
 
-  /// A += B'B, B [8, unknowns]: for an A that is made so.
+  // For what has as many unknowns.
+  /// A += B'B, B [8, unknowns].
   void AddGram(const MatrixXd& B, MatrixXd* A) const noexcept;
+  /// y = A x.
+  void Product(const MatrixXd& A, const VectorXd& x, VectorXd* y) const noexcept;
 
  private:
   struct Kernels;

@@ -133,7 +133,7 @@ TEST_P(EveryTreeInScrews, HasTheSameForces) {
 TEST_P(EveryTreeInScrews, HasTheSameMassMatrixAndMomenta) {
   const VectorXd q = SomePose();
   SetPose(q);
-  MatrixXd M(tree_.nv, tree_.nv);
+  MatrixXd M = MatrixXd::Zero(tree_.nv, tree_.nv);
   CompositeMassMatrix(tree_, ws_, &inertias_, &M);
   const MatrixXd expected = MassMatrix(tree_, q);
   EXPECT_LE((M - expected).norm(), kIdentity * expected.norm());

@@ -25,8 +25,9 @@ std::vector<MasterState> Wandering(DeviceInfo* device) {
   return samples;
 }
 
+/// And the safety that goes with it.
 std::unique_ptr<Tick> MakeTick(const KinematicTree& tree, int grasp, const DeviceInfo& device,
-                               Architecture architecture) {
+                               Architecture architecture, SafetyOptions* safety) {
   const VectorXd q = ClosedStart(tree);
   if (architecture == Architecture::kPaper) {
     RenderingGains wanted;
@@ -40,6 +41,7 @@ std::unique_ptr<Tick> MakeTick(const KinematicTree& tree, int grasp, const Devic
       ChooseCoupling(tree, GraspFrameOf(tree, grasp), q, device, options.smoothing);
   options.coupling = choice.coupling;
   options.scale = choice.scale;
+  *safety = choice.Safety();
   return std::make_unique<CoupledTick>(tree, grasp, q, device.period, options);
 }
 
@@ -51,8 +53,11 @@ HeldTick::HeldTick(const std::string& example, Architecture architecture)
   const int grasp = FindGrasp(mechanism, "handle");
   tree_ = std::make_unique<KinematicTree>(BuildKinematicTree(mechanism));
   observer_ = std::make_unique<HandObserver>(HandObserverOptions{}, device_);
-  tick_ = MakeTick(*tree_, grasp, device_, architecture);
-  safety_ = std::make_unique<SafetyFilter>(SafetyOptions{}, device_);
+  SafetyOptions safety;
+  tick_ = MakeTick(*tree_, grasp, device_, architecture, &safety);
+  safety.soft_start = 0;
+  safety.energy_trip = 100;  // the hand is stronger than any force
+  safety_ = std::make_unique<SafetyFilter>(safety, device_);
   torques_ = std::make_unique<ArmTorques>(PostureOptions{}, device_.arm, device_.period,
                                           device_.angular.resolution);
   registration_ = GraspedAt(Matrix3d::Identity(), samples_[0].X_DH, tick_->GraspFrame());
@@ -61,14 +66,17 @@ HeldTick::HeldTick(const std::string& example, Architecture architecture)
     ObserveOn(sample);
     hands_.push_back(observed_);
   }
+  observer_->Reset();
 }
 
 const MasterState& HeldTick::NextSample() {
   if (next_ == samples_.size() - 1) forward_ = false;
   if (next_ == 0) forward_ = true;
   next_ += forward_ ? 1 : -1;
-  samples_[next_].sequence = ++sequence_;
-  return samples_[next_];
+  MasterState& sample = samples_[next_];
+  sample.sequence = ++sequence_;
+  sample.applied_F_Ho_D = command_.F_Ho_D;
+  return sample;
 }
 
 void HeldTick::Full() noexcept VMECH_NONBLOCKING {
@@ -101,7 +109,7 @@ void HeldTick::Resolve() {
   torques_->Resolve(NextSample(), true, &command_);
 }
 
-/// The arm of the samples exerts nothing.
+/// The hand of the samples goes its way whatever it feels: as if the arm exerted nothing.
 void HeldTick::ObserveOn(const MasterState& state) {
   if (!tick_->TakesObserved()) return;
   observer_->Update(state, Vector6d::Zero(), 1);
@@ -125,6 +133,7 @@ void HeldTick::FilterOf(const MasterState& state) {
   const SafetyOutput safe = safety_->Apply(
       {Lifecycle::kActive, IoStatus::kOk, &state, wanted_.F_Ho_W, wanted_.stored_energy});
   command_.F_Ho_D = safe.F_Ho_D;
+  force_off_ = safe.off;
 }
 
 }  // namespace vmech

@@ -35,6 +35,9 @@ class HeldTick {
   void Filter();
   void Resolve();
 
+  /// Why the safety filter lets no force through, if it does not.
+  ForceOff force_off() const { return force_off_; }
+
  private:
   /// To and fro over the samples, with sequence numbers that go on.
   const MasterState& NextSample();
@@ -57,6 +60,7 @@ class HeldTick {
   std::vector<MovingFrame> hands_;  // of the samples, on the way there
   TickOutput wanted_;
   MasterCommand command_;
+  ForceOff force_off_ = ForceOff::kNone;
   std::vector<double> channels_;
 };
 

@@ -226,6 +226,27 @@ TEST(ArmTorques, PostureTorqueDoesNotAccelerateTheHandle) {
   }
 }
 
+TEST(ArmTorques, HoldAHairsBreadthFromThePostureTheyWereFoundAt) {
+  const auto arm = std::make_shared<const ArmDescription>(SarcosMasterArm());
+  ArmTorques torques(PostureOptions{}, arm, 1e-3, 1e-4);
+  ArmModel model(arm);
+  MasterState state;
+  MasterCommand command;
+  for (int i = 0; i < 7; ++i) state.q[i] = arm->posture[i] + 0.1 * (i % 3);
+  const auto handle_acceleration = [&] {
+    torques.Resolve(state, true, &command);
+    model.SetPosture(state.q.data());
+    const VectorXd tau = Eigen::Map<const VectorXd>(command.torque.data(), 7);
+    const VectorXd vdot = model.MassMatrix().llt().solve(tau);
+    return (model.J() * vdot).norm() / vdot.norm();
+  };
+  EXPECT_LT(handle_acceleration(), 1e-6);
+  for (int i = 0; i < 7; ++i) state.q[i] += i % 2 == 0 ? 0.9e-3 : -0.9e-3;
+  EXPECT_LT(handle_acceleration(), 5e-3);
+  for (int i = 0; i < 7; ++i) state.q[i] += i % 2 == 0 ? 0.2e-3 : -0.2e-3;
+  EXPECT_LT(handle_acceleration(), 1e-6);
+}
+
 TEST(ArmTorques, WithoutPostureAreThoseOfTheJacobian) {
   const auto arm = std::make_shared<const ArmDescription>(SarcosMasterArm());
   ArmTorques torques({0, 0}, arm, 1e-3, 1e-4);
