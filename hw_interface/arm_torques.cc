@@ -34,7 +34,7 @@ void ArmTorques::Reset() noexcept {
 
 void ArmTorques::Resolve(const MasterState& state, bool fresh,
                          MasterCommand* command) noexcept VMECH_NONBLOCKING {
-  constexpr double kSamePosture = 1e-3;  // [rad], [m]
+  constexpr double kSamePosture = 3e-3;  // [rad], [m]
   const Eigen::Map<const JointArray> q(state.q.data());
   arm_.SetPosture(q.data());
   if (!((q - found_at_).abs().maxCoeff() < kSamePosture)) {

@@ -26,8 +26,8 @@ struct PostureOptions {
 /// n_k a basis of the null space of J, orthogonal in the metric M. The sum is what the dynamically
 /// consistent inverse Jbar = M^-1 J' (J M^-1 J')^-1 [Khatib 1987] leaves of tau_p, (1 - J' Jbar')
 /// tau_p: it does not accelerate the handle, since J M^-1 M n_k = 0. The n_k hold until a joint has
-/// moved by a thousandth of a radian or metre, and the handle gets no more than about that part of
-/// tau_p. Joint velocities come from Kalman filters. No allocation after construction.
+/// moved by 3e-3 rad or m, and the handle gets no more than about that part of tau_p. Joint
+/// velocities come from Kalman filters. No allocation after construction.
 class ArmTorques {
  public:
   /// `resolution` of the encoders [rad]. @throws as Validate and ArmModel.

@@ -105,9 +105,13 @@ SafetyOutput SafetyFilter::Apply(const SafetyInput& input) noexcept VMECH_NONBLO
   Clamp(&F, &out);
   Slew(&F, &out);
   out.F_Ho_D = Vector6Of(F);
-  for (int i = 0; i < kSafetyStages; ++i) counters_.stages[i] += (out.stages >> i) & 1;
+  if (out.stages != 0) CountStages(out.stages);
   sent_[out.sequence % kMemory] = last_ = F;
   return out;
+}
+
+void SafetyFilter::CountStages(std::uint32_t stages) noexcept {
+  for (int i = 0; i < kSafetyStages; ++i) counters_.stages[i] += (stages >> i) & 1;
 }
 
 ForceOff SafetyFilter::Gate(const SafetyInput& input) noexcept {

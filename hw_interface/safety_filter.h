@@ -115,6 +115,7 @@ class SafetyFilter {
   static constexpr std::uint64_t kMemory = 64;
 
   ForceOff Gate(const SafetyInput& input) noexcept;
+  void CountStages(std::uint32_t stages) noexcept;
   void Observe(const SafetyInput& input) noexcept;
   std::uint64_t CommandAtWork(const MasterState& state, std::uint64_t latest) const noexcept;
   Screw ExertedBy(std::uint64_t command, const MasterState& state) const noexcept;
