@@ -22,8 +22,9 @@ constexpr int kClosingSteps = 5;
 constexpr double kClosed = 3e-11;      // [-] where the closing stops
 constexpr double kStillClosed = 1e-9;  // [-] beyond, a step is not taken
 constexpr double kSameWay = 1e-3;      // of a velocity, across the last
+constexpr double kMuchFaster = 10;     // than in the last step
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-constexpr double kFarthest = 0.1;  // [rad] or [m] that a coordinate moves in a step
+constexpr double kFarthest = 0.1;  // [rad] and [m] that the coordinates move in a step
 
 HandCoupling Checked(HandCoupling coupling, GraspKind kind) {
   for (int i = 0; i < 6; ++i) {
@@ -333,7 +334,8 @@ void CoupledDynamics::AimAtClosure() noexcept {
   const double speed2 = SquaredSpeed(v_);
   const double along = speed2 > 0 ? Dot(next_v_.data(), v_.data(), tree_.nv) / speed2 : 0;
   x_ = next_v_ - along * v_;
-  if (SquaredSpeed(x_) < kSameWay * kSameWay * SquaredSpeed(next_v_)) {
+  const double aside2 = SquaredSpeed(x_) / (kSameWay * kSameWay);
+  if (std::abs(along) < kMuchFaster && aside2 < SquaredSpeed(next_v_)) {
     opening_ = pose_.e2() - (T_ * (1 - 0.5 * along * along)) * d_ + miss_;
   } else {
     pose_.SetVelocities(next_v_);

@@ -149,6 +149,7 @@ void CoupledTick::Feel(bool held) noexcept {
 ///
 ///   E = F'K^-1 F / 2,   (1 + c)/2 F.dX <= (1 - c^2) E   by   c = 1 - F.dX/2E.
 void CoupledTick::Fade() noexcept {
+  if (Power(fading_, fading_) == 0) return;
   const double force = Length(fading_.linear), most = options_.grasp_rate * period_;
   double left = fade_;
   if (force * (1 - left) > most) left = 1 - most / force;
