@@ -20,16 +20,17 @@ from sources import ROOT, relative
 
 MODULES = ("mechanisms", "solvers", "kinematics", "dynamics", "comparison", "hw_interface",
            "apps")
+GCC_ALONE = re.compile(r" -m(move|store)-max=\d+")  # options that clang refuses
 INCLUDE = re.compile(r'^#include "vmech/([^"]+)"', re.MULTILINE)
 
 
 def compile_commands(build):
-    """The compile command of each source of a module."""
+    """The entry of each source of a module in the compile database, as clang takes it."""
     commands = {}
     for entry in json.loads((build / "compile_commands.json").read_text()):
         path = pathlib.Path(entry["file"])
         if ROOT in path.parents and path.relative_to(ROOT).parts[0] in MODULES:
-            commands[path] = entry["command"]
+            commands[path] = entry | {"command": GCC_ALONE.sub("", entry["command"])}
     return commands
 
 
@@ -51,12 +52,13 @@ def fingerprint(source, command, tidy_version):
     return digest.hexdigest()
 
 
-def check(source, tidy, build, passed):
+def check(source, tidy, database, passed):
     """The findings in one source; None if there are none."""
     if passed.exists():
         return None
     result = subprocess.run(
-        [tidy, "-p", str(build), "--quiet", "--extra-arg=-Wno-unknown-warning-option", str(source)],
+        [tidy, "-p", str(database), "--quiet", "--extra-arg=-Wno-unknown-warning-option",
+         str(source)],
         capture_output=True, text=True)
     if result.returncode == 0:
         passed.touch()
@@ -73,10 +75,11 @@ def main():
     if not commands:
         print("the compile database names no source of a module")
         return 1
+    (cache / "compile_commands.json").write_text(json.dumps(list(commands.values())))
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        checks = [pool.submit(check, source, tidy, build,
-                              cache / fingerprint(source, command, version))
-                  for source, command in commands.items()]
+        checks = [pool.submit(check, source, tidy, cache,
+                              cache / fingerprint(source, entry["command"], version))
+                  for source, entry in commands.items()]
         findings = [found for found in (task.result() for task in checks) if found]
     print("\n".join(findings) or f"{len(commands)} sources are clean")
     return 1 if findings else 0
