@@ -1,59 +1,17 @@
 #include "vmech/comparison/closed_walk.h"
 
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "vmech/kinematics/assembly.h"
+#include "vmech/kinematics/configuration_distance.h"
 #include "vmech/kinematics/linear_algebra.h"
 #include "vmech/kinematics/mobility.h"
 
 namespace vmech {
-namespace {
-
-/// Squared distance of one node's coordinates.
-double SquaredDifference(const TreeNode& node, double length, const VectorXd& a,
-                         const VectorXd& b) {
-  constexpr double kTurn = 2 * std::numbers::pi;
-  switch (node.motion) {
-    case NodeMotion::kFixed:
-      return 0;
-    case NodeMotion::kSpherical: {
-      const double cosine = a.segment<4>(node.q).dot(b.segment<4>(node.q));
-      // |a - b| of unit quaternions is 2 sin(angle / 4): exact for small angles too.
-      const double sign = cosine < 0 ? -1 : 1;
-      const double chord = (a.segment<4>(node.q) - sign * b.segment<4>(node.q)).norm();
-      return std::pow(4 * std::asin(std::min(1.0, chord / 2)), 2);
-    }
-    case NodeMotion::kPrismatic:
-      return std::pow((a[node.q] - b[node.q]) / length, 2);
-    case NodeMotion::kScrew:
-      return std::pow(a[node.q] - b[node.q], 2);
-    case NodeMotion::kRevolute:
-      break;
-  }
-  return std::pow(std::remainder(a[node.q] - b[node.q], kTurn), 2);
-}
-
-}  // namespace
-
-double ConfigurationDistance(const KinematicTree& tree, const VectorXd& a, const VectorXd& b) {
-  double sum = 0;
-  for (const TreeNode& node : tree.nodes) sum += SquaredDifference(node, tree.length, a, b);
-  return std::sqrt(sum);
-}
-
 MatrixXd FreeMotionBasis(const KinematicTree& tree, const VectorXd& q) {
   if (tree.loops.empty()) return MatrixXd::Identity(tree.nv, tree.nv);
   return FindNullSpace(DimensionlessLoopJacobian(tree, q), kRankTolerance).basis;
-}
-
-VectorXd TangentScale(const KinematicTree& tree) {
-  VectorXd scale = VectorXd::Ones(tree.nv);
-  for (const TreeNode& node : tree.nodes) {
-    if (node.motion == NodeMotion::kPrismatic) scale[node.v] = tree.length;
-  }
-  return scale;
 }
 
 ClosedWalk::ClosedWalk(const KinematicTree& tree, const std::vector<Bound>& bounds, int rank,

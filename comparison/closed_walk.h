@@ -8,16 +8,9 @@
 
 namespace vmech {
 
-/// How far two configurations are apart: the norm of the differences of all coordinates of the
-/// tree, in radians (whole turns do not count) and characteristic lengths.
-double ConfigurationDistance(const KinematicTree& tree, const VectorXd& a, const VectorXd& b);
-
 /// The free motions at a closed configuration: an orthonormal basis of the null space of the loop
 /// Jacobian [nv, mobility], in radians and characteristic lengths.
 MatrixXd FreeMotionBasis(const KinematicTree& tree, const VectorXd& q);
-
-/// Characteristic lengths or radians to the units of each velocity [nv].
-VectorXd TangentScale(const KinematicTree& tree);
 
 /// A walk over closed configurations within the joint limits, on one branch: small steps along the
 /// free motions, each closed again by Assemble. It keeps away from poses where the loops lose rank:

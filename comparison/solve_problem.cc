@@ -9,11 +9,12 @@
 #include <memory>
 #include <vector>
 
-#include "vmech/comparison/closed_walk.h"
 #include "vmech/comparison/statistics.h"
+#include "vmech/kinematics/configuration_distance.h"
 #include "vmech/kinematics/hand_tracker.h"
 #include "vmech/kinematics/linear_algebra.h"
 #include "vmech/kinematics/mobility.h"
+#include "vmech/kinematics/unseen_motions.h"
 #include "vmech/solvers/run.h"
 
 namespace vmech {
@@ -71,6 +72,13 @@ double LeastCurvature(ConstrainedLeastSquares& problem, const Summary& summary) 
   return eigenvalues[0] / std::max(eigenvalues.cwiseAbs().maxCoeff(), 1e-300);
 }
 
+/// How far a configuration is from another one as the grasp tells it: after the motions that
+/// neither hand nor loops see have brought it as near as they can.
+double SeenDistance(Subject* subject, const VectorXd& q, const VectorXd& other) {
+  const VectorXd nearest = NearestAlongUnseen(&subject->problem(), q, other);
+  return ConfigurationDistance(subject->tree(), nearest, other);
+}
+
 /// What came out of one solve, and what we measure of it.
 class Judged {
  public:
@@ -80,7 +88,7 @@ class Judged {
     InverseKinematics& ik = subject_.problem();
     e1_ = ik.HandError(summary_.x);
     if (ik.grasp().kind == GraspKind::kPoint) e1_.tail<3>().setZero();
-    distance_ = ConfigurationDistance(subject_.tree(), summary_.x, problem_.own[target_]);
+    distance_ = SeenDistance(subject, summary_.x, problem_.own[target_]);
   }
 
   const Summary& summary() const { return summary_; }
@@ -219,7 +227,7 @@ void FollowPath(const Suite& suite, const TargetBlock& block, const Problem& pro
       continue;
     }
     ++result->reached;
-    const double moved = ConfigurationDistance(subject->tree(), x, summary.x);
+    const double moved = SeenDistance(subject, summary.x, x);
     if (problem.determined && moved > kJump * since * block.step) ++result->jumps;
     since = 1;
     x = summary.x;

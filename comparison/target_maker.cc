@@ -10,8 +10,10 @@
 #include <stdexcept>
 
 #include "vmech/kinematics/assembly.h"
+#include "vmech/kinematics/configuration_distance.h"
 #include "vmech/kinematics/linear_algebra.h"
 #include "vmech/kinematics/mobility.h"
+#include "vmech/kinematics/unseen_motions.h"
 
 namespace vmech {
 namespace {
@@ -197,7 +199,8 @@ Subject::Subject(const SuiteMechanism& given)
                                  tree_.X_node_link(given.grasp.link) * given.grasp.X_LG,
                                  given.grasp.kind}),
       q_start_(ClosedStart(tree_, given.name)),
-      rank_(AnalyseMobility(tree_, q_start_).rank) {}
+      rank_(AnalyseMobility(tree_, q_start_).rank),
+      unseen_(FindUnseenMotions(&problem_, q_start_).count()) {}
 
 ClosedWalk Subject::WalkFrom(const VectorXd& q, PortableRandom* random) const {
   return {tree_, problem_.bounds(), rank_, q, random};
@@ -212,8 +215,8 @@ MatrixXd Subject::GraspMotions(const VectorXd& q) {
 
 double Subject::Determination(const VectorXd& q) {
   const MatrixXd JZ = GraspMotions(q);
-  if (JZ.cols() > JZ.rows() || JZ.cols() == 0) return 0;
-  return FindLeftSingularVectors(JZ).values[JZ.cols() - 1];
+  const Eigen::Index seen = std::min(JZ.cols() - unseen_, JZ.rows());
+  return seen <= 0 ? 0 : FindLeftSingularVectors(JZ).values[seen - 1];
 }
 
 Problem MakeProblem(Subject* subject, const TargetBlock& block, uint64_t seed) {

@@ -26,15 +26,17 @@ class Subject {
   /// The grasp's motions, J Z [rows of e1, mobility], in radians and characteristic lengths.
   MatrixXd GraspMotions(const VectorXd& q);
   /// How well the grasp tells the configuration: the smallest singular value of J Z, of one per
-  /// freedom; 0 if some free motion does not move the grasp. It vanishes where the mechanism is
-  /// singular as seen from the grasp, a dead centre of the link that is held among these.
+  /// freedom. It vanishes where the mechanism is singular as seen from the grasp, a dead centre of
+  /// the link that is held among these. Free motions that move the grasp nowhere do not count
+  /// (unseen_motions.h); 0 if there are no others.
   double Determination(const VectorXd& q);
 
  private:
   KinematicTree tree_;
   InverseKinematics problem_;
   VectorXd q_start_;
-  int rank_;  // of the loop equations, in general
+  int rank_;    // of the loop equations, in general
+  int unseen_;  // free motions that the grasp does not see, in general
 };
 
 /// A target, or a path of targets, and where to begin.

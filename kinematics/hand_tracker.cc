@@ -7,6 +7,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "vmech/kinematics/configuration_distance.h"
+#include "vmech/kinematics/unseen_motions.h"
 #include "vmech/solvers/stopping_rule.h"
 
 namespace vmech {
@@ -23,17 +25,18 @@ constexpr double kReferenceBehind = 0.05, kReferenceRange = 0.2;
 /// det(A'A_ref) over the largest det(A'A) so far, below which a pose is near a dead centre: where
 /// the hand moves the mechanism 30 times less than elsewhere.
 constexpr double kReferenceNear = 1e-3;
-/// Motions that neither hand nor loops see (a rod that spins) count with this part of the largest.
-constexpr double kUnseen = 1e-12;
+/// Added to A'A_ref, as a part of its largest diagonal: exactly singular poses have logarithms too.
+constexpr double kFloor = 1e-12;
 /// A step that is longer than this part of the one before calls for second derivatives.
 constexpr double kSlow = 0.02;
 constexpr int kInverseIterations = 4;
 constexpr int kClosingSteps = 3;
 constexpr double kClosingWeight = 1e3;
 
-/// Gaussian elimination with pivoting in place: sign of the determinant, its logarithm in *log.
-int EliminateForSign(MatrixXd& M, double* log) noexcept {
-  const Eigen::Index n = M.rows();
+/// Gaussian elimination with pivoting in place, M to U and X to L^-1 X: sign of the determinant,
+/// its logarithm in *log.
+int EliminateForSign(MatrixXd& M, MatrixXd& X, double* log) noexcept {
+  const Eigen::Index n = M.rows(), columns = X.cols();
   int sign = 1;
   *log = 0;
   for (Eigen::Index k = 0; k < n; ++k) {
@@ -44,6 +47,7 @@ int EliminateForSign(MatrixXd& M, double* log) noexcept {
     if (!(std::abs(M(pivot, k)) > 0)) return 0;
     if (pivot != k) {
       M.row(k).swap(M.row(pivot));
+      if (columns > 0) X.row(k).swap(X.row(pivot));
       sign = -sign;
     }
     if (M(k, k) < 0) sign = -sign;
@@ -52,8 +56,42 @@ int EliminateForSign(MatrixXd& M, double* log) noexcept {
       const double factor = M(k, j) / M(k, k);
       for (Eigen::Index i = k + 1; i < n; ++i) M(i, j) -= factor * M(i, k);
     }
+    for (Eigen::Index j = 0; j < columns; ++j) {
+      const double factor = X(k, j) / M(k, k);
+      for (Eigen::Index i = k + 1; i < n; ++i) X(i, j) -= factor * M(i, k);
+    }
   }
   return sign;
+}
+
+/// X to U^-1 X, U the upper triangle of M.
+void BackSubstitute(const MatrixXd& M, MatrixXd& X) noexcept {
+  for (Eigen::Index j = 0; j < X.cols(); ++j) {
+    for (Eigen::Index k = M.rows() - 1; k >= 0; --k) {
+      X(k, j) /= M(k, k);
+      for (Eigen::Index i = 0; i < k; ++i) X(i, j) -= M(i, k) * X(k, j);
+    }
+  }
+}
+
+/// Gram and Schmidt's method in place; returns the logarithm of the volume that the columns span.
+double Orthonormalise(MatrixXd& X) noexcept {
+  double log = 0;
+  for (Eigen::Index j = 0; j < X.cols(); ++j) {
+    for (Eigen::Index i = 0; i < j; ++i) X.col(j) -= X.col(i).dot(X.col(j)) * X.col(i);
+    const double length = X.col(j).norm();
+    log += std::log(length);
+    X.col(j) /= length;
+  }
+  return log;
+}
+
+/// The motions that neither hand nor loops see at q, orthonormal velocities [nv, count].
+MatrixXd UnseenVelocities(InverseKinematics* problem, const VectorXd& q) {
+  const UnseenMotions unseen = FindUnseenMotions(problem, q);
+  MatrixXd velocities = TangentScale(problem->tree()).asDiagonal() * unseen.basis;
+  Orthonormalise(velocities);
+  return velocities;
 }
 
 }  // namespace
@@ -142,6 +180,8 @@ HandTracker::HandTracker(const KinematicTree& tree, const GraspFrame& grasp, con
                     at_trial_.c.lpNorm<Eigen::Infinity>()));
   }
   StackJacobians();
+  unseen_ = unseen_reference_ = UnseenVelocities(&problem_, q);
+  unseen_weight_ = A_.colwise().squaredNorm().maxCoeff();
   TakeReference();
 }
 
@@ -242,20 +282,44 @@ void HandTracker::StackJacobians() noexcept {
   A_.bottomRows(at_trial_.C.rows()) = at_trial_.C;
 }
 
-/// det(A'A_ref) over det(A_ref'A_ref).
+/// det(A'A_ref) over det(A_ref'A_ref), unseen motions left out; these, at trial_, go to unseen_.
+///
+/// With N the unseen motions, A N = 0, and M = A_ref'A + s N_ref N_ref',
+///
+///     det M = s^k det(N_ref'N) det(A_ref'A on the others),   M^-1 s N_ref = N (N_ref'N)^-1,
+///
+/// so that one elimination gives the determinant and N.
 double HandTracker::BranchDeterminant() noexcept {
   product_ = A_.transpose().lazyProduct(A_reference_);
-  product_.diagonal().array() += kUnseen * product_.diagonal().cwiseAbs().maxCoeff();
+  const bool some_unseen = unseen_.cols() > 0;
+  if (some_unseen) {
+    product_.transposeInPlace();
+    AddUnseen(unseen_reference_);
+    unseen_ = unseen_weight_ * unseen_reference_;
+  }
+  product_.diagonal().array() += kFloor * product_.diagonal().cwiseAbs().maxCoeff();
   double log = 0;
-  const int sign = EliminateForSign(product_, &log);
+  const int sign = EliminateForSign(product_, unseen_, &log);
+  if (some_unseen && sign == 0) unseen_ = unseen_reference_;
+  if (some_unseen && sign != 0) {
+    BackSubstitute(product_, unseen_);
+    log += Orthonormalise(unseen_);
+  }
   return sign * std::exp(log - log_reference_);
 }
 
-/// The motion that hand and loops resist least at trial_, by inverse iteration on A'A: step_, of
-/// size kBeside.
+void HandTracker::AddUnseen(const MatrixXd& N) noexcept {
+  for (Eigen::Index k = 0; k < N.cols(); ++k) {
+    product_.noalias() += (unseen_weight_ * N.col(k)).lazyProduct(N.col(k).transpose());
+  }
+}
+
+/// The motion that hand and loops resist least at trial_, but for what they do not see anywhere, by
+/// inverse iteration on A'A: step_, of size kBeside.
 void HandTracker::FindSoftMotion() noexcept {
   product_ = A_.transpose().lazyProduct(A_);
-  product_.diagonal().array() += kUnseen * product_.diagonal().maxCoeff();
+  AddUnseen(unseen_);
+  product_.diagonal().array() += kFloor * product_.diagonal().maxCoeff();
   normal_.compute(product_);
   step_ = VectorXd::LinSpaced(step_.size(), 1, 2);
   for (int i = 0; i < kInverseIterations; ++i) {
@@ -330,6 +394,7 @@ void HandTracker::MoveToTrial() noexcept {
 void HandTracker::TakeReference() noexcept {
   q_reference_ = q_;
   A_reference_ = A_;
+  unseen_reference_ = unseen_;
   log_reference_ = 0;
   log_reference_ = std::log(BranchDeterminant());
   log_best_ = std::max(log_best_, log_reference_);

@@ -70,7 +70,9 @@ struct TrackSummary {
 /// both sides: the one on this side is taken, and without one the last good pose is held. At a dead
 /// centre the mechanism stands 2 mrad beside it, on its side, until the hand comes back. So a
 /// parallelogram that is stretched out stays so: both ways on are as good. A singular pose that
-/// folds nothing (the outer axes of a wrist in line) is passed straight through.
+/// folds nothing (the outer axes of a wrist in line) is passed straight through. Motions that
+/// neither hand nor loops see at any pose (unseen_motions.h: a rod that spins, an elbow that
+/// circles) have no part in the determinant, and are left at rest but for rounding.
 class HandTracker {
  public:
   /// Keeps a reference to the tree. q is a closed pose (Assemble).
@@ -111,6 +113,7 @@ class HandTracker {
   void Close() noexcept;
   void StackJacobians() noexcept;
   double BranchDeterminant() noexcept;
+  void AddUnseen(const MatrixXd& N) noexcept;
   void FindSoftMotion() noexcept;
   bool TryBeside(double size) noexcept;
   bool StandBeside() noexcept;
@@ -131,6 +134,8 @@ class HandTracker {
   MatrixXd A_, product_;  // [J; C] at trial_; A'A_ref
   VectorXd q_reference_;  // an earlier good pose, at a distance from dead centres
   MatrixXd A_reference_;
+  MatrixXd unseen_, unseen_reference_;  // N, orthonormal, at trial_ and at the reference
+  double unseen_weight_ = 0;            // of N N' beside A'A
   double log_reference_ = 0;                                    // log det(A_ref'A_ref)
   double log_best_ = -std::numeric_limits<double>::infinity();  // the largest so far
   double determinant_ = 1;                                      // BranchDeterminant() at trial_

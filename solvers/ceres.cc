@@ -130,13 +130,22 @@ class CeresSolver {
     if (manifold->TangentSize() == 0) return true;
     ceres::Problem rows;
     rows.AddParameterBlock(x_.data(), static_cast<int>(x_.size()), manifold.release());
-    rows.AddResidualBlock(new WeightedRows(problem_, weight_, mu_), nullptr, x_.data());
+    rows.AddResidualBlock(new WeightedRows(problem_, weight_, mu_, CountNullMotions()), nullptr,
+                          x_.data());
     for (const Bound& bound : problem_.bounds()) {
       if (held_[bound.tangent] || bound.lower == bound.upper) continue;
       rows.SetParameterLowerBound(x_.data(), bound.coordinate, bound.lower);
       rows.SetParameterUpperBound(x_.data(), bound.coordinate, bound.upper);
     }
     return SolveWithCeres(options_.stopping.max_iterations - iterations_, &rows);
+  }
+
+  int CountNullMotions() {
+    at_x_.Evaluate(problem_, x_);
+    if (!at_x_.AllFinite()) return 0;
+    NullMotions null(problem_.sizes().tangents);
+    null.Find(at_x_, NullMotions::Held::Constant(problem_.sizes().tangents, false));
+    return null.count();
   }
 
   bool SolveWithCeres(int max_iterations, ceres::Problem* rows) {

@@ -5,6 +5,10 @@
 namespace vmech {
 namespace {
 
+NullMotions::Held NoneHeld(const ConstrainedLeastSquares& problem) {
+  return NullMotions::Held::Constant(problem.sizes().tangents, false);
+}
+
 using Rows = Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
 
 }  // namespace
@@ -31,9 +35,15 @@ bool FreeTangents::PlusJacobian(const double*, double* jacobian) const {
   return true;
 }
 
-WeightedRows::WeightedRows(ConstrainedLeastSquares& problem, double weight, const VectorXd& mu)
-    : problem_(problem), weight_(weight), mu_(mu), at_x_(problem.sizes()) {
-  set_num_residuals(problem.sizes().residuals + problem.sizes().constraints);
+WeightedRows::WeightedRows(ConstrainedLeastSquares& problem, double weight, const VectorXd& mu,
+                           int null_motions)
+    : problem_(problem),
+      weight_(weight),
+      mu_(mu),
+      null_motions_(null_motions),
+      at_x_(problem.sizes()),
+      null_(problem.sizes().tangents) {
+  set_num_residuals(problem.sizes().residuals + problem.sizes().constraints + null_motions);
   mutable_parameter_block_sizes()->push_back(problem.sizes().coordinates);
 }
 
@@ -45,18 +55,22 @@ bool WeightedRows::Evaluate(double const* const* parameters, double* residuals,
   problem_.Evaluate(x, &at_x_.r, derivatives ? &at_x_.J : nullptr, &at_x_.c,
                     derivatives ? &at_x_.C : nullptr);
   Eigen::Map<VectorXd> rows(residuals, num_residuals());
-  rows << at_x_.r, weight_ * at_x_.c + mu_ / weight_;
+  rows << at_x_.r, weight_ * at_x_.c + mu_ / weight_, VectorXd::Zero(null_motions_);
   if (derivatives) {
     Rows D(jacobians[0], num_residuals(), sizes.coordinates);
     D.setZero();
     D.topLeftCorner(sizes.residuals, sizes.tangents) = at_x_.J;
-    D.bottomLeftCorner(sizes.constraints, sizes.tangents) = weight_ * at_x_.C;
+    D.block(sizes.residuals, 0, sizes.constraints, sizes.tangents) = weight_ * at_x_.C;
+    if (null_motions_ > 0) null_.Find(at_x_, NoneHeld(problem_));
+    for (int k = 0; k < std::min(null_motions_, null_.count()); ++k) {
+      D.row(sizes.residuals + sizes.constraints + k).head(sizes.tangents) = null_.motion(k);
+    }
   }
   return rows.allFinite();
 }
 
 OptimalityRows::OptimalityRows(ConstrainedLeastSquares& problem, const std::vector<bool>& held)
-    : problem_(problem), held_(held), at_x_(problem.sizes()) {
+    : problem_(problem), held_(held), at_x_(problem.sizes()), null_(problem.sizes().tangents) {
   const ProblemSizes& sizes = problem.sizes();
   set_num_residuals(sizes.tangents + sizes.constraints);
   mutable_parameter_block_sizes()->push_back(sizes.coordinates);
@@ -92,11 +106,14 @@ bool OptimalityRows::Evaluate(double const* const* parameters, double* residuals
   return rows.allFinite();
 }
 
-// J'J, with the second derivatives if the problem has them.
+// J'J, with the second derivatives if the problem has them, and stiff along null motions.
 MatrixXd OptimalityRows::Hessian(const VectorXd& x, const VectorXd& mu) const {
   MatrixXd S = MatrixXd::Zero(at_x_.J.cols(), at_x_.J.cols());
   if (problem_.has_second_derivatives()) problem_.Curvature(x, mu, &S);
-  return S + at_x_.J.transpose() * at_x_.J;
+  S += at_x_.J.transpose() * at_x_.J;
+  null_.Find(at_x_, NoneHeld(problem_));
+  null_.Stiffen(1, &S);
+  return S;
 }
 
 }  // namespace vmech

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "vmech/solvers/optimality.h"
+#include "vmech/solvers/null_motions.h"
 
 namespace vmech {
 
@@ -32,10 +32,12 @@ class FreeTangents final : public ceres::Manifold {
   mutable VectorXd step_;  // zero where held; Ceres calls from one thread
 };
 
-/// [r; w c + mu/w] in x.
+/// [r; w c + mu/w; 0] in x. The zeros have the null motions for their Jacobian: a step of theirs
+/// would cost, so that there is none. There are `null_motions` of them at most.
 class WeightedRows final : public ceres::CostFunction {
  public:
-  WeightedRows(ConstrainedLeastSquares& problem, double weight, const VectorXd& mu);
+  WeightedRows(ConstrainedLeastSquares& problem, double weight, const VectorXd& mu,
+               int null_motions);
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override;
 
@@ -43,10 +45,13 @@ class WeightedRows final : public ceres::CostFunction {
   ConstrainedLeastSquares& problem_;
   double weight_;
   const VectorXd& mu_;
+  int null_motions_;
   mutable Linearization at_x_;
+  mutable NullMotions null_;
 };
 
-/// The conditions of a minimum, [J'r + C'mu; c], in x and mu; rows of held tangents are zero.
+/// The conditions of a minimum, [J'r + C'mu; c], in x and mu; rows of held tangents are zero. Null
+/// motions are stiff in their Jacobian, where the conditions leave them open.
 class OptimalityRows final : public ceres::CostFunction {
  public:
   OptimalityRows(ConstrainedLeastSquares& problem, const std::vector<bool>& held);
@@ -59,6 +64,7 @@ class OptimalityRows final : public ceres::CostFunction {
   ConstrainedLeastSquares& problem_;
   const std::vector<bool>& held_;
   mutable Linearization at_x_;
+  mutable NullMotions null_;
 };
 
 }  // namespace vmech

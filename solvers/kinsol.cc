@@ -12,6 +12,7 @@
 #include <string>
 
 #include "vmech/solvers/held_coordinates.h"
+#include "vmech/solvers/null_motions.h"
 #include "vmech/solvers/tangent_chart.h"
 
 namespace vmech {
@@ -59,7 +60,11 @@ class SquareSystem {
     if (closure_only_) return C;
     const Eigen::Index n = C.cols(), m = C.rows();
     MatrixXd K = MatrixXd::Zero(n + m, n + m);
-    K.topLeftCorner(n, n) = chart_.Hessian(1, u.tail(m))(free_, free_);
+    MatrixXd H = chart_.Hessian(1, u.tail(m));
+    NullMotions null(static_cast<int>(H.rows()));
+    null.Find(at_y, NullMotions::Held::Constant(H.rows(), false));
+    null.Stiffen(1, &H);
+    K.topLeftCorner(n, n) = H(free_, free_);
     K.topRightCorner(n, m) = C.transpose();
     K.bottomLeftCorner(m, n) = C;
     // Flat directions leave K singular; this much curvature does not change where F = 0.

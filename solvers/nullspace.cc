@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "vmech/solvers/complete_orthogonal.h"
+#include "vmech/solvers/null_motions.h"
 #include "vmech/solvers/optimality.h"
 #include "vmech/solvers/run.h"
 
@@ -27,6 +28,7 @@ class NullspaceSolver {
         options_(options),
         at_x_(problem.sizes()),
         mu_(VectorXd::Zero(problem.sizes().constraints)),
+        null_(problem.sizes().tangents),
         held_(problem.sizes().tangents, false) {}
 
   Outcome Minimize(VectorXd* x) {
@@ -67,10 +69,19 @@ class NullspaceSolver {
       problem_.Curvature(x, mu_, &S);
       B_ += S;
     }
+    LeaveOutNullMotions();
     // Rows that are redundant where c = 0 have pivots of the order of c elsewhere, and would ask
     // for steps of order one: damped by |c|^2 they ask for nothing, and the order of convergence
     // stays two [Yamashita & Fukushima 2001].
     closing_damping_ = kClosingDamping * std::min(at_x_.c.squaredNorm(), at_x_.C.squaredNorm());
+  }
+
+  // Looks for them while there are any.
+  void LeaveOutNullMotions() {
+    if (!look_for_null_) return;
+    null_.Find(at_x_, NullMotions::Held::Constant(gradient_.size(), false));
+    look_for_null_ = null_.count() > 0;
+    null_.Stiffen(B_.cwiseAbs().maxCoeff(), &B_);
   }
 
   // The step for a working set of held coordinates; the set changes until the step respects every
@@ -213,6 +224,8 @@ class NullspaceSolver {
   Linearization at_x_;
   VectorXd mu_, step_mu_, gradient_, reduced_slope_, d_, trial_c_;
   MatrixXd B_;
+  NullMotions null_;
+  bool look_for_null_ = true;
   double nu_ = 0, damping_ = kLeastDamping, closing_damping_ = 0;
   std::vector<bool> held_;
   std::vector<int> free_;

@@ -35,7 +35,10 @@ bool WithinBounds(const ConstrainedLeastSquares& problem, const VectorXd& x) noe
 }  // namespace
 
 WeightedStep::WeightedStep(const ConstrainedLeastSquares& problem)
-    : at_x(problem.sizes()), equations_(problem.sizes().tangents), at_trial_(problem.sizes()) {
+    : at_x(problem.sizes()),
+      equations_(problem.sizes().tangents),
+      null_(problem.sizes().tangents),
+      at_trial_(problem.sizes()) {
   const ProblemSizes& sizes = problem.sizes();
   dx = chord_dx_ = scale_ = damping_ = VectorXd::Zero(sizes.tangents);
   S_ = MatrixXd::Zero(sizes.tangents, sizes.tangents);
@@ -54,14 +57,24 @@ bool WeightedStep::FormEquations(ConstrainedLeastSquares& problem, const VectorX
   const double weight = lambda * lambda;
   for (int i = 0; i < forces_.size(); ++i) forces_[i] = mu[i] + weight * at_x.c[i];
   equations_.Form(at_x, weight, forces_);
-  if (use_curvature) {
-    problem.Curvature(x, forces_, &S_);
-    equations_.H += S_;
-  }
   HoldAtBounds(problem, x);
+  if (look_for_null_) {
+    null_.Find(at_x, equations_.held);
+    look_for_null_ = null_.count() > 0;
+  }
+  if (use_curvature || null_.count() > 0) AddCurvature(problem, x);
   double sum = 0;
   for (int j = 0; j < equations_.size(); ++j) sum += std::abs(equations_.g[j]) + equations_.H(j, j);
   return std::isfinite(sum);
+}
+
+void WeightedStep::AddCurvature(ConstrainedLeastSquares& problem, const VectorXd& x) noexcept {
+  if (use_curvature)
+    problem.Curvature(x, forces_, &S_);
+  else
+    S_.setZero();
+  if (null_.count() > 0) null_.Stiffen(equations_.H.trace() / equations_.size(), &S_);
+  equations_.H += S_;
 }
 
 void WeightedStep::HoldAtBounds(const ConstrainedLeastSquares& problem,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vmech/solvers/normal_equations.h"
+#include "vmech/solvers/null_motions.h"
 #include "vmech/solvers/optimality.h"
 
 namespace vmech {
@@ -16,7 +17,8 @@ namespace vmech {
 ///
 /// solved by its normal equations, with Marquardt damping relative to the diagonal of H (the
 /// largest so far in one minimisation, as in MINPACK), and with coordinates held that press
-/// against a bound. All memory is taken by the constructor; nothing else here allocates or throws.
+/// against a bound. Steps that neither residuals nor constraints see are left out (null_motions.h);
+/// a step looks for them if the one before had any, or if there was none. All memory is taken by the constructor; nothing else here allocates or throws.
 class WeightedStep {
  public:
   explicit WeightedStep(const ConstrainedLeastSquares& problem);
@@ -70,10 +72,13 @@ class WeightedStep {
   double PromisedDecrease() const noexcept;
   void CorrectForCurvature(const ConstrainedLeastSquares& problem, const VectorXd& x, double lambda,
                            double max_step) noexcept;
+  void AddCurvature(ConstrainedLeastSquares& problem, const VectorXd& x) noexcept;
   void HoldAtBounds(const ConstrainedLeastSquares& problem, const VectorXd& x) noexcept;
   void Clip(const ConstrainedLeastSquares& problem, const VectorXd& x, double max_step) noexcept;
 
   NormalEquations equations_;
+  NullMotions null_;
+  bool look_for_null_ = true;
   Linearization at_trial_;
   VectorXd trial_x_;
   VectorXd scale_;  // largest diagonal of H so far: a column that fades keeps its damping (MINPACK)

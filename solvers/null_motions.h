@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "vmech/solvers/optimality.h"
+
+namespace vmech {
+
+/// The steps that neither residuals nor constraints see, to first order: the null space N of
+/// [J; C]. Mostly they lead along points that are all as good, as where a rod spins between its
+/// ball joints. There the second derivatives S couple them to the other steps as long as a force
+/// is left, so that J'J + S is indefinite however near the minimum is, and asks for long steps that
+/// change nothing. Without S, rounding does.
+///
+/// Found in J'J + C'C by L D L' without pivoting, where a pivot of rounding tells a motion: made for
+/// some ten unknowns. All memory is taken by the constructor.
+class NullMotions {
+ public:
+  using Held = Eigen::Matrix<bool, Eigen::Dynamic, 1>;
+
+  explicit NullMotions(int unknowns);
+
+  /// At a point; unknowns that are held do not move.
+  void Find(const Linearization& at_x, const Held& held) noexcept;
+
+  int count() const noexcept { return count_; }
+  /// One of them, of length 1 and square to the others.
+  auto motion(int k) const noexcept { return N_.col(k); }
+
+  /// S to P S P + stiffness N N', P = 1 - N N': a step of least norm, as far as it is not seen.
+  void Stiffen(double stiffness, MatrixXd* S) noexcept;
+
+ private:
+  void Form(const Linearization& at_x) noexcept;
+  void AddMotion(int j) noexcept;
+
+  int count_ = 0;
+  MatrixXd L_;  // unit lower triangle; below the pivot of a null motion, zero
+  MatrixXd N_;  // the first count_ columns
+  VectorXd diagonal_, Sn_;
+};
+
+}  // namespace vmech
