@@ -12,6 +12,7 @@
 #include "vmech/kinematics/forward_kinematics.h"
 #include "vmech/kinematics/hand_tracker.h"
 #include "vmech/kinematics/loops.h"
+#include "vmech/kinematics/unseen_motions.h"
 #include "vmech/mechanisms/reader.h"
 
 namespace vmech {
@@ -214,7 +215,9 @@ IkBranch FindBranch(const InverseKinematicsOptions& options, const IkAnswer& ans
         {R_from.slerp(s, R_to).toRotationMatrix(), from.p + s * (answer.X_WH.p - from.p)});
   }
   if (status != TrackStatus::kFollowed) return IkBranch::kUnknown;
-  const bool same = LinkDistance(answer.tree, tracker.q(), answer.summary.x) < kSamePose;
+  // What neither hand nor loops see may have moved differently on the two ways.
+  const VectorXd x = NearestAlongUnseen(&tracker.kinematics(), answer.summary.x, tracker.q());
+  const bool same = LinkDistance(answer.tree, tracker.q(), x) < kSamePose;
   return same ? IkBranch::kSame : IkBranch::kOther;
 }
 

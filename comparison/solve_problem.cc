@@ -73,9 +73,9 @@ double LeastCurvature(ConstrainedLeastSquares& problem, const Summary& summary) 
 }
 
 /// How far a configuration is from another one as the grasp tells it: after the motions that
-/// neither hand nor loops see have brought it as near as they can.
-double SeenDistance(Subject* subject, const VectorXd& q, const VectorXd& other) {
-  const VectorXd nearest = NearestAlongUnseen(&subject->problem(), q, other);
+/// neither hand nor loops see have brought it as near as they can, or `enough`.
+double SeenDistance(Subject* subject, const VectorXd& q, const VectorXd& other, double enough) {
+  const VectorXd nearest = NearestAlongUnseen(&subject->problem(), q, other, enough);
   return ConfigurationDistance(subject->tree(), nearest, other);
 }
 
@@ -88,7 +88,8 @@ class Judged {
     InverseKinematics& ik = subject_.problem();
     e1_ = ik.HandError(summary_.x);
     if (ik.grasp().kind == GraspKind::kPoint) e1_.tail<3>().setZero();
-    distance_ = SeenDistance(subject, summary_.x, problem_.own[target_]);
+    distance_ = SeenDistance(subject, summary_.x, problem_.own[target_],
+                             kSameConfiguration);
   }
 
   const Summary& summary() const { return summary_; }
@@ -227,8 +228,8 @@ void FollowPath(const Suite& suite, const TargetBlock& block, const Problem& pro
       continue;
     }
     ++result->reached;
-    const double moved = SeenDistance(subject, summary.x, x);
-    if (problem.determined && moved > kJump * since * block.step) ++result->jumps;
+    const double jump = kJump * since * block.step;
+    if (problem.determined && SeenDistance(subject, summary.x, x, jump) > jump) ++result->jumps;
     since = 1;
     x = summary.x;
   }

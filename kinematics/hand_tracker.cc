@@ -308,9 +308,12 @@ double HandTracker::BranchDeterminant() noexcept {
   return sign * std::exp(log - log_reference_);
 }
 
+// product_ += s N N'
 void HandTracker::AddUnseen(const MatrixXd& N) noexcept {
   for (Eigen::Index k = 0; k < N.cols(); ++k) {
-    product_.noalias() += (unseen_weight_ * N.col(k)).lazyProduct(N.col(k).transpose());
+    for (Eigen::Index j = 0; j < N.rows(); ++j) {
+      product_.col(j) += unseen_weight_ * N(j, k) * N.col(k);
+    }
   }
 }
 

@@ -187,8 +187,8 @@ UnseenMotions FindUnseenMotions(InverseKinematics* problem, const VectorXd& q) {
   return {Orthonormal(here * (here.transpose() * general))};
 }
 
-VectorXd NearestAlongUnseen(InverseKinematics* problem, const VectorXd& q, const VectorXd& goal) {
-  constexpr double kThere = 1e-4;
+VectorXd NearestAlongUnseen(InverseKinematics* problem, const VectorXd& q, const VectorXd& goal,
+                            double enough) {
   const UnseenMotions unseen = FindUnseenMotions(problem, q);
   if (unseen.count() == 0) return q;
   UnseenWalk walk(problem, unseen, q);
@@ -196,7 +196,7 @@ VectorXd NearestAlongUnseen(InverseKinematics* problem, const VectorXd& q, const
   VectorXd nearest = walk.q();
   if (unseen.count() > 1) return nearest;
   for (const double side : {1.0, -1.0}) {
-    if (ConfigurationDistance(problem->tree(), nearest, goal) <= kThere) break;
+    if (ConfigurationDistance(problem->tree(), nearest, goal) <= enough) break;
     const VectorXd start = NearestOnTheWay(problem, unseen, q, goal, side);
     UnseenWalk from_there(problem, FindUnseenMotions(problem, start), start);
     from_there.Approach(goal);

@@ -6,6 +6,7 @@
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cstdlib>
 #include <stdexcept>
@@ -25,11 +26,13 @@ Eigen::Map<VectorXd> Map(N_Vector v) {
 // The square system F(u) = 0 in one chart, u = (free y; mu), or u = free y for c = 0 alone.
 class SquareSystem {
  public:
-  SquareSystem(TangentChart& chart, const std::vector<int>& held) : chart_(chart) {
+  SquareSystem(TangentChart& chart, std::vector<int> held) : chart_(chart) {
+    const bool driven = !held.empty();
+    for (const int i : UnseenVariables(held)) held.push_back(i);
     for (int i = 0; i < chart.num_variables(); ++i) {
       if (std::find(held.begin(), held.end(), i) == held.end()) free_.push_back(i);
     }
-    closure_only_ = !held.empty() && static_cast<int>(free_.size()) == chart.num_constraints();
+    closure_only_ = driven && static_cast<int>(free_.size()) == chart.num_constraints();
   }
 
   int size() const {
@@ -60,11 +63,7 @@ class SquareSystem {
     if (closure_only_) return C;
     const Eigen::Index n = C.cols(), m = C.rows();
     MatrixXd K = MatrixXd::Zero(n + m, n + m);
-    MatrixXd H = chart_.Hessian(1, u.tail(m));
-    NullMotions null(static_cast<int>(H.rows()));
-    null.Find(at_y, NullMotions::Held::Constant(H.rows(), false));
-    null.Stiffen(1, &H);
-    K.topLeftCorner(n, n) = H(free_, free_);
+    K.topLeftCorner(n, n) = chart_.Hessian(1, u.tail(m))(free_, free_);
     K.topRightCorner(n, m) = C.transpose();
     K.bottomLeftCorner(m, n) = C;
     // Flat directions leave K singular; this much curvature does not change where F = 0.
@@ -74,6 +73,21 @@ class SquareSystem {
   }
 
  private:
+  // Of each null motion at the base the variable that it moves most: where that is held the others
+  // reach the same minima, and K is regular.
+  std::vector<int> UnseenVariables(const std::vector<int>& held) {
+    const int n = chart_.num_variables();
+    NullMotions::Held fixed = NullMotions::Held::Constant(n, false);
+    for (const int i : held) fixed[i] = true;
+    NullMotions null(n);
+    null.Find(chart_.At(VectorXd::Zero(n)), fixed);
+    MatrixXd motions(null.count(), n);
+    for (int k = 0; k < null.count(); ++k) motions.row(k) = null.motion(k);
+    if (null.count() == 0) return {};
+    const auto order = Eigen::ColPivHouseholderQR<MatrixXd>(motions).colsPermutation().indices();
+    return {order.begin(), order.begin() + null.count()};
+  }
+
   TangentChart& chart_;
   std::vector<int> free_;
   bool closure_only_ = false;

@@ -20,9 +20,10 @@ MOBILITY = {
     "delta-robot": 3, "dietmaier-platform": 6, "door-on-two-hinges": 1, "flyball-governor": 4,
     "four-bar": 1, "manseur-doty": 6, "marghitu-slider-crank": 1, "modelica-engine1a": 1,
     "modelica-four-bar": 1,
-    "n-window-four-bar": 1, "puma-560": 6, "rssr": 2, "rsup": 1, "slider-crank": 1,
-    "spherical-four-bar": 1,
-    "square-four-bar": 1, "stewart-gough": 6, "sundials-slider-crank": 1, "two-link-arm": 2,
+    "n-window-four-bar": 1, "puma-560": 6, "redundant-arm": 7, "rssr": 2, "rsup": 1,
+    "slider-crank": 1, "spherical-four-bar": 1,
+    "square-four-bar": 1, "stewart-gough": 6, "stewart-gough-sps": 12,
+    "sundials-slider-crank": 1, "two-link-arm": 2,
 }
 OUTPUTS = {"loads.csv", "motion.csv", "certainty.csv", "bearings.csv", "summary.json",
            "report.html"}

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+#include <utility>
+
 #include "support/examples.h"
 
 namespace vmech {
@@ -9,11 +13,11 @@ namespace {
 
 /// A suite of one mechanism and one block.
 struct OneBlock {
-  explicit OneBlock(const std::string& example, TargetBlock block = {}) {
+  explicit OneBlock(const std::string& example, TargetBlock block = {}, int grasp = 0) {
     SuiteMechanism entry;
     entry.name = example;
     entry.mechanism = Example(example);
-    entry.grasp = entry.mechanism.grasps.at(0);
+    entry.grasp = entry.mechanism.grasps.at(grasp);
     entry.blocks = {0};
     suite.mechanisms = {entry};
     suite.blocks = {std::move(block)};
@@ -94,6 +98,69 @@ TEST(SolveProblem, FollowsAPathByTheFastPath) {
   EXPECT_EQ(result.reached, 20);
   EXPECT_LE(result.e2, one.suite.stopping.constraint_tolerance);
   EXPECT_GT(result.time, 0);
+}
+
+/// Mechanisms with freedoms that neither the grasp nor the loops see, by their grasps.
+constexpr std::pair<const char*, int> kUnseen[] = {
+    {"rssr", 1}, {"rssr", 2}, {"stewart-gough-sps", 0}, {"redundant-arm", 0}};
+
+TEST(SolveProblem, ReachesTargetsThatLeaveFreedomsUnseenByEveryExactMethod) {
+  TargetBlock block;
+  block.start_distance = 0.2;
+  for (const auto& [example, grasp] : kUnseen) {
+    OneBlock one(example, block, grasp);
+    for (const Backend backend : {Backend::kPenalty, Backend::kAugmentedLagrangian,
+                                  Backend::kNullspace, Backend::kCeresExact, Backend::kIpopt}) {
+      for (uint64_t seed = 0; seed < 5; ++seed) {
+        const Result result = one.Solve(seed, backend);
+        if (result.verdict == Verdict::kUnavailable) continue;
+        EXPECT_EQ(result.verdict, Verdict::kSolved)
+            << example << " by " << NameOf(backend) << ", seed " << seed << ": " << result.message;
+      }
+    }
+  }
+}
+
+TEST(SolveProblem, FollowsPathsThatLeaveFreedomsUnseen) {
+  for (const auto& [example, grasp] : kUnseen) {
+    OneBlock one(example, Block(TargetKind::kTracking), grasp);
+    for (uint64_t seed = 0; seed < 4; ++seed) {
+      for (const Contestant& solver :
+           {Contestant::FastPath(), Contestant(Backend::kAugmentedLagrangian)}) {
+        const Result result = one.Solve(seed, solver);
+        EXPECT_EQ(result.verdict, Verdict::kSolved)
+            << example << " by " << solver.name() << ": " << result.message;
+        EXPECT_NE(result.branch, Branch::kFree);
+      }
+    }
+  }
+}
+
+TEST(SolveProblem, TellsTheBranchWhateverWayARodHasSpun) {
+  // A rocker has two cranks: which one is found is told from the crank alone.
+  OneBlock one("rssr", {}, 1);
+  Subject subject(one.suite.mechanisms[0]);
+  const KinematicTree& tree = subject.tree();
+  const int crank = CoordinateIndex(tree, FindJoint(tree.mechanism, "input"), 0);
+  InverseKinematics& ik = subject.problem();
+  int own = 0, other = 0;
+  for (uint64_t seed = 0; seed < 20; ++seed) {
+    TargetBlock block;
+    block.start = seed < 10 ? StartKind::kNear : StartKind::kFar;
+    const Problem problem = MakeProblem(&subject, block, seed);
+    EXPECT_TRUE(problem.determined);
+    ik.SetTarget(problem.targets[0]);
+    const Summary summary = Solve(Backend::kNullspace, ik, {}, problem.start);
+    const Result result =
+        SolveProblem(one.suite, {}, problem, &subject, Contestant(Backend::kNullspace));
+    if (result.verdict != Verdict::kSolved) continue;
+    const double off =
+        std::abs(std::remainder(summary.x[crank] - problem.own[0][crank], 2 * std::numbers::pi));
+    EXPECT_EQ(result.branch, off < 1e-4 ? Branch::kOwn : Branch::kOther) << "seed " << seed;
+    ++(off < 1e-4 ? own : other);
+  }
+  EXPECT_GT(own, 0);
+  EXPECT_GT(other, 0);
 }
 
 TEST(SolveProblem, CountsTheTargetsThatAreLostWhereIterationsAreTooFew) {

@@ -5,6 +5,7 @@
 #include "support/examples.h"
 #include "vmech/comparison/closed_walk.h"
 #include "vmech/kinematics/closure.h"
+#include "vmech/kinematics/configuration_distance.h"
 #include "vmech/solvers/optimality.h"
 
 namespace vmech {

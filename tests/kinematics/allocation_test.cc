@@ -35,7 +35,7 @@ TEST_P(FastPath, AllocatesNothingWhileItFollowsAHand) {
 
 INSTANTIATE_TEST_SUITE_P(Examples, FastPath,
                          testing::Values("two-link-arm", "slider-crank", "rssr", "bennett",
-                                         "stewart-gough"),
+                                         "stewart-gough", "stewart-gough-sps", "redundant-arm"),
                          [](const auto& info) { return TestName(info.param); });
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "support/examples.h"
 #include "vmech/kinematics/assembly_modes.h"
 #include "vmech/kinematics/mobility.h"
+#include "vmech/kinematics/unseen_motions.h"
 #include "vmech/solvers/nullspace.h"
 
 namespace vmech {
@@ -129,7 +130,8 @@ INSTANTIATE_TEST_SUITE_P(Examples, EveryHeldExample,
                                          "stewart-gough", "n-window-four-bar", "delta-robot",
                                          "square-four-bar", "marghitu-slider-crank",
                                          "modelica-four-bar", "door-on-two-hinges",
-                                         "dietmaier-platform", "manseur-doty"),
+                                         "dietmaier-platform", "manseur-doty",
+                                         "stewart-gough-sps", "redundant-arm"),
                          [](const auto& info) { return TestName(info.param); });
 
 TEST(HandTracker, HoldsASliderCrankThroughItsDeadCentreOnTheSideWhereItWas) {
@@ -179,6 +181,93 @@ TEST(HandTracker, HoldsACrankRockerThatIsPushedAtItsRocker) {
   // Back where it began: 6000 targets make 1.9 swings, the last ends at sin(12).
   for (int k = 0; k < 200; ++k) (void)tracker.Advance(start);
   EXPECT_NEAR(tracker.q()[crank], held.q[crank], 1e-5);
+}
+
+/// The RSSR linkage held by its rocker, with the ball at the rocker or with a universal joint that
+/// keeps the rod from spinning.
+struct SkewRocker {
+  explicit SkewRocker(bool spins) : tree(BuildKinematicTree(Linkage(spins))) {
+    q = StartCoordinates(tree);
+    AssemblyOptions assembly;
+    for (const char* joint : {"input", "output"}) {
+      assembly.fixed.push_back(VelocityIndex(tree, FindJoint(tree.mechanism, joint), 0));
+    }
+    if (spins) assembly.fixed.pop_back();
+    EXPECT_TRUE(Assemble(tree, assembly, &q).closed);
+    grasp = GraspFrameOf(tree, 1);
+    start = InverseKinematics(tree, grasp).GraspPose(q);
+    const JointPlacement& place = tree.placements[FindJoint(tree.mechanism, "output")];
+    X_WP = place.X_AF;
+  }
+  static Mechanism Linkage(bool spins) {
+    Mechanism mechanism = Example("rssr");
+    if (spins) return mechanism;
+    // The cross: one axis square to the rod, the other along the axis of the rocker.
+    const int b = FindJoint(mechanism, "ball_b");
+    const Joint ball = mechanism.joints[b];
+    const auto anchor = [&](const AnchorId& end) -> Posed& {
+      return mechanism.links[end.link].anchors[end.anchor].X_LA;
+    };
+    anchor(ball.first).R = AxesFromZX(Vector3d::UnitX(), Vector3d::UnitZ());
+    anchor(ball.second).R = AxesFromZX(-Vector3d::UnitY(), Vector3d::UnitX());
+    mechanism.joints[b] = MakeJoint("ball_b", JointType::kUniversal, ball.first, ball.second);
+    return mechanism;
+  }
+  Posed RockerTurned(double angle) const {
+    const Eigen::AngleAxisd turn(angle, Vector3d::UnitZ());
+    const Matrix3d R = X_WP.R * turn.toRotationMatrix() * X_WP.R.transpose();
+    return Posed{R, X_WP.p - R * X_WP.p} * start;
+  }
+  double Crank(const VectorXd& at) const {
+    return at[CoordinateIndex(tree, FindJoint(tree.mechanism, "input"), 0)];
+  }
+
+  KinematicTree tree;
+  VectorXd q;
+  GraspFrame grasp;
+  Posed start, X_WP;
+};
+
+TEST(HandTracker, HoldsALinkageWhoseRodSpinsAsOneWhoseRodDoesNot) {
+  const SkewRocker pinned(false), spinning(true);
+  for (const double spin : {0.0, 0.7, 2.0, -1.3}) {
+    VectorXd q = spinning.q;
+    InverseKinematics problem(spinning.tree, spinning.grasp);
+    Integrate(spinning.tree, spin * FindUnseenMotions(&problem, q).basis.col(0), &q);
+    ASSERT_TRUE(Assemble(spinning.tree, {}, &q).closed);
+    HandTracker reference(pinned.tree, pinned.grasp, pinned.q);
+    HandTracker tracker(spinning.tree, spinning.grasp, q);
+    double swing = 0;
+    for (int k = 0; k < 3000; ++k) {
+      // Through both dead centres of the rocker, and beyond; there the pose is free to 0.03 rad.
+      const double angle = 1.3 * std::sin(0.004 * k);
+      (void)reference.Advance(pinned.RockerTurned(angle));
+      (void)tracker.Advance(spinning.RockerTurned(angle));
+      const double crank = spinning.Crank(tracker.q());
+      ASSERT_NEAR(crank, pinned.Crank(reference.q()), 0.05) << "target " << k << ", spin " << spin;
+      swing = std::max(swing, std::abs(crank - spinning.Crank(q)));
+    }
+    EXPECT_GT(swing, 1);
+    EXPECT_GT(tracker.summary().dead_centre, 0) << tracker.summary().BriefReport();
+    EXPECT_EQ(tracker.summary().jumps + tracker.summary().lost, 0)
+        << tracker.summary().BriefReport();
+    for (int k = 0; k < 200; ++k) (void)tracker.Advance(spinning.start);
+    EXPECT_NEAR(spinning.Crank(tracker.q()), spinning.Crank(q), 1e-5);
+  }
+}
+
+TEST(HandTracker, LeavesAnArmToSpareAtRestWhereTheHandIs) {
+  const Held held("redundant-arm");
+  HandTracker tracker(held.tree, held.grasp, held.q);
+  const Posed start = held.Start();
+  for (int k = 0; k < 2000; ++k) {
+    Posed X_WH = start;
+    X_WH.p += 0.05 * Vector3d(std::sin(0.01 * k), std::sin(0.02 * k), std::cos(0.01 * k) - 1);
+    ASSERT_EQ(tracker.Advance(X_WH), TrackStatus::kFollowed) << "target " << k;
+  }
+  const VectorXd there = tracker.q();
+  for (int k = 0; k < 1000; ++k) (void)tracker.Advance(tracker.kinematics().target());
+  EXPECT_LT((tracker.q() - there).norm(), 1e-5);
 }
 
 TEST(HandTracker, StaysAtTheLimitsOfJointsAndComesBack) {
