@@ -32,7 +32,7 @@ enum class Branch {
   kUnknown,  ///< nothing was found
   kOwn,      ///< that from which the target was made
   kOther,    ///< another one
-  kFree,     ///< the grasp does not tell the configuration
+  kFree,     ///< the grasp does not tell the configuration, as at a singular pose
 };
 
 std::string_view NameOf(Verdict verdict);
@@ -58,7 +58,9 @@ struct Result {
   double e2 = 0;           ///< largest loop error [characteristic lengths, rad]
   double kkt = 0;          ///< Summary::kkt_error
   Branch branch = Branch::kUnknown;
-  double distance = 0;  ///< from the target's own configuration [rad, characteristic lengths]
+  /// From the target's own configuration, along what grasp or loops see (unseen_motions.h) [rad,
+  /// characteristic lengths].
+  double distance = 0;
 };
 
 /// True if a solver did what the kind of problem asks for: reached the target, or came to the

@@ -88,8 +88,7 @@ class Judged {
     InverseKinematics& ik = subject_.problem();
     e1_ = ik.HandError(summary_.x);
     if (ik.grasp().kind == GraspKind::kPoint) e1_.tail<3>().setZero();
-    distance_ = SeenDistance(subject, summary_.x, problem_.own[target_],
-                             kSameConfiguration);
+    distance_ = SeenDistance(subject, summary_.x, problem_.own[target_], kSameConfiguration);
   }
 
   const Summary& summary() const { return summary_; }

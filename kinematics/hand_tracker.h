@@ -136,7 +136,7 @@ class HandTracker {
   MatrixXd A_reference_;
   MatrixXd unseen_, unseen_reference_;  // N, orthonormal, at trial_ and at the reference
   double unseen_weight_ = 0;            // of N N' beside A'A
-  double log_reference_ = 0;                                    // log det(A_ref'A_ref)
+  double log_reference_ = 0;            // log det(A_ref'A_ref)
   double log_best_ = -std::numeric_limits<double>::infinity();  // the largest so far
   double determinant_ = 1;                                      // BranchDeterminant() at trial_
   Eigen::LDLT<MatrixXd> normal_;

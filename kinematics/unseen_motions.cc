@@ -59,7 +59,8 @@ std::vector<VectorXd> ClosedNeighbours(const KinematicTree& tree, const VectorXd
   constexpr int kNeighbours = 3;
   constexpr double kAway = 0.1;  // [rad, characteristic lengths]
   MatrixXd Z = MatrixXd::Identity(tree.nv, tree.nv);
-  if (!tree.loops.empty()) Z = FindNullSpace(DimensionlessLoopJacobian(tree, q), kRankTolerance).basis;
+  if (!tree.loops.empty())
+    Z = FindNullSpace(DimensionlessLoopJacobian(tree, q), kRankTolerance).basis;
   std::vector<VectorXd> neighbours;
   for (int k = 0; k < kNeighbours && Z.cols() > 0; ++k) {
     VectorXd way(Z.cols());

@@ -7,60 +7,76 @@ namespace {
 
 // Pivots below this part of their diagonal are rounding.
 constexpr double kNoPivot = 1e-13;
-// Of the largest diagonal: a column that nothing depends on.
+// Of the largest diagonal: nothing depends on a column without more.
 constexpr double kNoColumn = 1e-18;
 
 }  // namespace
 
 NullMotions::NullMotions(int unknowns)
-    : L_(MatrixXd::Zero(unknowns, unknowns)),
+    : A_(MatrixXd::Zero(unknowns, unknowns)),
+      L_(MatrixXd::Zero(unknowns, unknowns)),
       N_(MatrixXd::Zero(unknowns, unknowns)),
       diagonal_(VectorXd::Zero(unknowns)),
-      Sn_(VectorXd::Zero(unknowns)) {}
+      Sn_(VectorXd::Zero(unknowns)),
+      order_(VectorXi::Zero(unknowns)) {
+  eliminated_.setConstant(unknowns, false);
+}
 
 void NullMotions::Find(const Linearization& at_x, const Held& held) noexcept {
-  const int n = static_cast<int>(L_.rows());
-  count_ = 0;
-  Form(at_x);
-  const double no_column = kNoColumn * (n > 0 ? diagonal_.maxCoeff() : 0);
-  for (int j = 0; j < n; ++j) {
-    const double pivot = L_(j, j);
-    const bool none = pivot <= std::max(kNoPivot * diagonal_[j], no_column);
-    if (held[j] || none) {
-      L_.col(j).tail(n - j - 1).setZero();
-      if (!held[j]) AddMotion(j);
-      continue;
-    }
-    for (int k = j + 1; k < n; ++k) {
-      if (held[k]) continue;
-      const double scaled = L_(k, j) / pivot;
-      for (int i = k; i < n; ++i) L_(i, k) -= scaled * L_(i, j);
-    }
-    L_.col(j).tail(n - j - 1) /= pivot;
+  Form(at_x, held);
+  rank_ = count_ = 0;
+  for (int pivot = LargestPivot(); pivot >= 0; pivot = LargestPivot()) Eliminate(pivot);
+  for (int j = 0; j < A_.rows(); ++j) {
+    if (!eliminated_[j]) AddMotion(j);
   }
 }
 
-// J'J + C'C in the lower triangle of L.
-void NullMotions::Form(const Linearization& at_x) noexcept {
-  const int n = static_cast<int>(L_.rows());
-  for (int j = 0; j < n; ++j) {
-    for (int i = j; i < n; ++i) {
-      L_(i, j) = at_x.J.col(i).dot(at_x.J.col(j)) + at_x.C.col(i).dot(at_x.C.col(j));
+// What is held counts as eliminated from the beginning.
+void NullMotions::Form(const Linearization& at_x, const Held& held) noexcept {
+  const Eigen::Index n = A_.rows();
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (Eigen::Index i = j; i < n; ++i) {
+      A_(i, j) = at_x.J.col(i).dot(at_x.J.col(j)) + at_x.C.col(i).dot(at_x.C.col(j));
+      A_(j, i) = A_(i, j);
     }
-    diagonal_[j] = L_(j, j);
+    diagonal_[j] = A_(j, j);
+    eliminated_[j] = held[j];
+  }
+  for (double& diagonal : diagonal_) {
+    diagonal = std::max(diagonal, kNoColumn / kNoPivot * diagonal_.maxCoeff());
   }
 }
 
-// Column j depends on those before it: L'n = e_j.
+// The unknown that depends least on those that are eliminated; -1 where all depend on them.
+int NullMotions::LargestPivot() const noexcept {
+  int best = -1;
+  double largest = kNoPivot;
+  for (int j = 0; j < A_.rows(); ++j) {
+    if (eliminated_[j] || !(A_(j, j) > largest * diagonal_[j])) continue;
+    largest = A_(j, j) / diagonal_[j];
+    best = j;
+  }
+  return best;
+}
+
+void NullMotions::Eliminate(int pivot) noexcept {
+  const Eigen::Index n = A_.rows();
+  auto l = L_.col(rank_);
+  eliminated_[pivot] = true;
+  for (Eigen::Index k = 0; k < n; ++k) l[k] = eliminated_[k] ? 0 : A_(k, pivot) / A_(pivot, pivot);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    if (l[k] == 0) continue;
+    for (Eigen::Index i = 0; i < n; ++i) A_(i, k) -= l[k] * A_(i, pivot);
+  }
+  order_[rank_++] = pivot;
+}
+
+// Unknown j depends on those that are eliminated: L'n = e_j.
 void NullMotions::AddMotion(int j) noexcept {
   auto n = N_.col(count_);
   n.setZero();
   n[j] = 1;
-  for (int i = j - 1; i >= 0; --i) {
-    double sum = 0;
-    for (int k = i + 1; k <= j; ++k) sum += L_(k, i) * n[k];
-    n[i] = -sum;
-  }
+  for (int s = rank_ - 1; s >= 0; --s) n[order_[s]] = -L_.col(s).dot(n);
   for (int k = 0; k < count_; ++k) n -= N_.col(k).dot(n) * N_.col(k);
   n.normalize();
   ++count_;

@@ -12,7 +12,7 @@ namespace vmech {
 /// is left, so that J'J + S is indefinite however near the minimum is, and asks for long steps that
 /// change nothing. Without S, rounding does.
 ///
-/// Found in J'J + C'C by L D L' without pivoting, where a pivot of rounding tells a motion: made for
+/// Found in J'J + C'C by L D L' with pivoting, where pivots of rounding tell the motions: made for
 /// some ten unknowns. All memory is taken by the constructor.
 class NullMotions {
  public:
@@ -31,13 +31,18 @@ class NullMotions {
   void Stiffen(double stiffness, MatrixXd* S) noexcept;
 
  private:
-  void Form(const Linearization& at_x) noexcept;
+  void Form(const Linearization& at_x, const Held& held) noexcept;
+  int LargestPivot() const noexcept;
+  void Eliminate(int pivot) noexcept;
   void AddMotion(int j) noexcept;
 
-  int count_ = 0;
-  MatrixXd L_;  // unit lower triangle; below the pivot of a null motion, zero
-  MatrixXd N_;  // the first count_ columns
+  using VectorXi = Eigen::Matrix<int, Eigen::Dynamic, 1>;
+  int rank_ = 0, count_ = 0;
+  MatrixXd A_, L_;  // what is left of J'J + C'C; a column of multipliers per pivot
+  MatrixXd N_;      // the first count_ columns
   VectorXd diagonal_, Sn_;
+  VectorXi order_;  // the unknowns that are eliminated, first to last
+  Held eliminated_;
 };
 
 }  // namespace vmech

@@ -76,11 +76,12 @@ class NullspaceSolver {
     closing_damping_ = kClosingDamping * std::min(at_x_.c.squaredNorm(), at_x_.C.squaredNorm());
   }
 
-  // Looks for them while there are any.
+  // Looks for them at first, and on if there were any.
   void LeaveOutNullMotions() {
-    if (!look_for_null_) return;
+    if (!first_look_ && !some_null_) return;
     null_.Find(at_x_, NullMotions::Held::Constant(gradient_.size(), false));
-    look_for_null_ = null_.count() > 0;
+    some_null_ |= null_.count() > 0;
+    first_look_ = false;
     null_.Stiffen(B_.cwiseAbs().maxCoeff(), &B_);
   }
 
@@ -225,7 +226,7 @@ class NullspaceSolver {
   VectorXd mu_, step_mu_, gradient_, reduced_slope_, d_, trial_c_;
   MatrixXd B_;
   NullMotions null_;
-  bool look_for_null_ = true;
+  bool first_look_ = true, some_null_ = false;  // null motions have been found once
   double nu_ = 0, damping_ = kLeastDamping, closing_damping_ = 0;
   std::vector<bool> held_;
   std::vector<int> free_;

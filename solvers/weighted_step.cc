@@ -58,10 +58,9 @@ bool WeightedStep::FormEquations(ConstrainedLeastSquares& problem, const VectorX
   for (int i = 0; i < forces_.size(); ++i) forces_[i] = mu[i] + weight * at_x.c[i];
   equations_.Form(at_x, weight, forces_);
   HoldAtBounds(problem, x);
-  if (look_for_null_) {
-    null_.Find(at_x, equations_.held);
-    look_for_null_ = null_.count() > 0;
-  }
+  if (first_look_ || some_null_) null_.Find(at_x, equations_.held);
+  some_null_ |= null_.count() > 0;
+  first_look_ = false;
   if (use_curvature || null_.count() > 0) AddCurvature(problem, x);
   double sum = 0;
   for (int j = 0; j < equations_.size(); ++j) sum += std::abs(equations_.g[j]) + equations_.H(j, j);

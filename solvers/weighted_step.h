@@ -18,7 +18,8 @@ namespace vmech {
 /// solved by its normal equations, with Marquardt damping relative to the diagonal of H (the
 /// largest so far in one minimisation, as in MINPACK), and with coordinates held that press
 /// against a bound. Steps that neither residuals nor constraints see are left out (null_motions.h);
-/// a step looks for them if the one before had any, or if there was none. All memory is taken by the constructor; nothing else here allocates or throws.
+/// the first step looks for them, later ones if there ever were any. All memory is taken by
+/// the constructor; nothing else here allocates or throws.
 class WeightedStep {
  public:
   explicit WeightedStep(const ConstrainedLeastSquares& problem);
@@ -78,7 +79,7 @@ class WeightedStep {
 
   NormalEquations equations_;
   NullMotions null_;
-  bool look_for_null_ = true;
+  bool first_look_ = true, some_null_ = false;  // null motions have been found once
   Linearization at_trial_;
   VectorXd trial_x_;
   VectorXd scale_;  // largest diagonal of H so far: a column that fades keeps its damping (MINPACK)

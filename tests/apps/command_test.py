@@ -40,6 +40,17 @@ def vmech(*arguments, folder=None):
                           text=True, stdin=subprocess.DEVNULL, timeout=120)
 
 
+def skew_rocker(angle):
+    """The pose of the grasp 'rocker' of rssr.yaml: position, and quaternion of the turn about x
+    that takes z to the output axis, then about z by the angle."""
+    tilt = math.atan2(0.644217687237691, 0.7648421872844886)
+    x, y = 0.6 * math.cos(angle), 0.6 * math.sin(angle)
+    position = (1 + x, 0.3 + y * math.cos(tilt), 0.2 + y * math.sin(tilt))
+    ct, st = math.cos(tilt / 2), math.sin(tilt / 2)
+    ca, sa = math.cos(angle / 2), math.sin(angle / 2)
+    return " ".join(repr(value) for value in (*position, ct * ca, st * ca, -st * sa, ct * sa))
+
+
 def studies():
     return sorted(EXAMPLES.glob("*-study.yaml"))
 
@@ -220,6 +231,22 @@ class Ik(InFolder):
         for answer in (up, down):
             self.assertEqual((answer["verdict"], answer["branch"]), ("reached", "same"))
         self.assertAlmostEqual(self.value(up, "elbow"), -self.value(down, "elbow"), delta=1e-8)
+
+    def test_tells_the_branch_of_a_rocker_whatever_its_rod_does(self):
+        # The rod between two balls spins as each solver leaves it; the crank tells the branch.
+        for turn in (-12, 5, 20):
+            target = skew_rocker(1.422806772461814 + math.radians(turn))
+            cranks = []
+            for solver in ("nullspace", "augmented_lagrangian", "ceres_exact", "ipopt", "penalty"):
+                with self.subTest(turn=turn, solver=solver):
+                    result = self.run_vmech("ik", "rssr.yaml", "--grasp", "rocker", "--target",
+                                            target, "--solver", solver, "--json")
+                    answer = json.loads(result.stdout)
+                    if answer["status"] == "unavailable":
+                        self.skipTest(answer["message"])
+                    self.assertEqual((answer["verdict"], answer["branch"]), ("reached", "same"))
+                    cranks.append(self.value(answer, "input"))
+            self.assertLess(max(cranks) - min(cranks), 1e-4)
 
     def test_is_the_same_by_every_exact_solver(self):
         target = "0.9 0.7 0.05  0 0 0.4"

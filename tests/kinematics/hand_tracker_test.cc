@@ -130,8 +130,8 @@ INSTANTIATE_TEST_SUITE_P(Examples, EveryHeldExample,
                                          "stewart-gough", "n-window-four-bar", "delta-robot",
                                          "square-four-bar", "marghitu-slider-crank",
                                          "modelica-four-bar", "door-on-two-hinges",
-                                         "dietmaier-platform", "manseur-doty",
-                                         "stewart-gough-sps", "redundant-arm"),
+                                         "dietmaier-platform", "manseur-doty", "stewart-gough-sps",
+                                         "redundant-arm"),
                          [](const auto& info) { return TestName(info.param); });
 
 TEST(HandTracker, HoldsASliderCrankThroughItsDeadCentreOnTheSideWhereItWas) {

@@ -158,8 +158,8 @@ INSTANTIATE_TEST_SUITE_P(Redundant, Pulled,
                          [](const auto& info) { return TestName(info.param); });
 INSTANTIATE_TEST_SUITE_P(Regular, Pulled,
                          testing::Values("crank", "rssr", "rsup", "stewart-gough", "delta-robot",
-                                         "dietmaier-platform", "manseur-doty",
-                                         "stewart-gough-sps", "redundant-arm"),
+                                         "dietmaier-platform", "manseur-doty", "stewart-gough-sps",
+                                         "redundant-arm"),
                          [](const auto& info) { return TestName(info.param); });
 
 TEST(InverseKinematics, StopsAtAJointLimitWithAMultiplierThatPushesBack) {

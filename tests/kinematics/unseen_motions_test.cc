@@ -48,14 +48,15 @@ TEST(UnseenMotions, AreTheSpinsOfRodsAndWhatAnArmHasToSpare) {
 }
 
 TEST(UnseenMotions, MoveNeitherTheGraspNorTheLoops) {
-  for (const auto& [example, link] :
-       {std::pair("rssr", "rocker"), {"stewart-gough-sps", "platform"}, {"redundant-arm", "flange"}}) {
+  for (const auto& [example, link] : {std::pair("rssr", "rocker"),
+                                      {"stewart-gough-sps", "platform"},
+                                      {"redundant-arm", "flange"}}) {
     Held held(example, link);
     held.problem.SetTarget(held.problem.GraspPose(held.q));
     Linearization at_q(held.problem.sizes());
     at_q.Evaluate(held.problem, held.q);
-    const MatrixXd v = TangentScale(held.tree).asDiagonal() *
-                       FindUnseenMotions(&held.problem, held.q).basis;
+    const MatrixXd v =
+        TangentScale(held.tree).asDiagonal() * FindUnseenMotions(&held.problem, held.q).basis;
     EXPECT_LT((at_q.J * v).norm() + (at_q.C * v).norm(), 1e-10) << example;
   }
 }
