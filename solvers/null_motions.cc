@@ -1,6 +1,7 @@
 #include "vmech/solvers/null_motions.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace vmech {
 namespace {
@@ -18,7 +19,8 @@ NullMotions::NullMotions(int unknowns)
       N_(MatrixXd::Zero(unknowns, unknowns)),
       diagonal_(VectorXd::Zero(unknowns)),
       Sn_(VectorXd::Zero(unknowns)),
-      order_(VectorXi::Zero(unknowns)) {
+      order_(VectorXi::Zero(unknowns)),
+      least_(unknowns) {
   eliminated_.setConstant(unknowns, false);
 }
 
@@ -29,6 +31,7 @@ void NullMotions::Find(const Linearization& at_x, const Held& held) noexcept {
   for (int j = 0; j < A_.rows(); ++j) {
     if (!eliminated_[j]) AddMotion(j);
   }
+  if (!held.any()) least_ = std::min(least_, count_);
 }
 
 // What is held counts as eliminated from the beginning.
@@ -82,8 +85,30 @@ void NullMotions::AddMotion(int j) noexcept {
   ++count_;
 }
 
+// Leaves those combinations of the motions that S does not couple to the one along which it curves
+// most.
+void NullMotions::DropMostCurved(const MatrixXd& S) noexcept {
+  const auto curvature = [&](int i, int k) {
+    for (Eigen::Index j = 0; j < S.cols(); ++j) Sn_[j] = S.col(j).dot(N_.col(k));
+    return Sn_.dot(N_.col(i));
+  };
+  int dropped = 0;
+  double largest = curvature(0, 0);
+  for (int k = 1; k < count_; ++k) {
+    const double along_k = curvature(k, k);
+    if (std::abs(along_k) > std::abs(largest)) largest = along_k, dropped = k;
+  }
+  N_.col(dropped).swap(N_.col(--count_));
+  for (int k = 0; k < count_; ++k) {
+    if (largest != 0) N_.col(k) -= curvature(k, count_) / largest * N_.col(count_);
+    for (int i = 0; i < k; ++i) N_.col(k) -= N_.col(i).dot(N_.col(k)) * N_.col(i);
+    N_.col(k).normalize();
+  }
+}
+
 void NullMotions::Stiffen(double stiffness, MatrixXd* S) noexcept {
   const Eigen::Index size = S->rows();
+  while (count_ > least_) DropMostCurved(*S);
   for (int k = 0; k < count_; ++k) {
     const auto n = N_.col(k);
     // (1 - n n') S (1 - n n') + s n n' = S - n u' - u n',   u = S n - (n'S n + s)/2 n

@@ -27,7 +27,9 @@ class NullMotions {
   /// One of them, of length 1 and square to the others.
   auto motion(int k) const noexcept { return N_.col(k); }
 
-  /// S to P S P + stiffness N N', P = 1 - N N': a step of least norm, as far as it is not seen.
+  /// S to P S P + stiffness N N', P = 1 - N N': a step of least norm, as far as it is not seen. If
+  /// there are more motions here than somewhere before, as at a dead centre, those are left out of
+  /// N along which S is curved most: there a force of the hand makes the minimum.
   void Stiffen(double stiffness, MatrixXd* S) noexcept;
 
  private:
@@ -35,6 +37,7 @@ class NullMotions {
   int LargestPivot() const noexcept;
   void Eliminate(int pivot) noexcept;
   void AddMotion(int j) noexcept;
+  void DropMostCurved(const MatrixXd& S) noexcept;
 
   using VectorXi = Eigen::Matrix<int, Eigen::Dynamic, 1>;
   int rank_ = 0, count_ = 0;
@@ -43,6 +46,7 @@ class NullMotions {
   VectorXd diagonal_, Sn_;
   VectorXi order_;  // the unknowns that are eliminated, first to last
   Held eliminated_;
+  int least_;  // count of the point with the fewest so far
 };
 
 }  // namespace vmech

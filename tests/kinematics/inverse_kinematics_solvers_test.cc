@@ -179,6 +179,33 @@ TEST(InverseKinematics, StopsAtAJointLimitWithAMultiplierThatPushesBack) {
   }
 }
 
+// At the dead centre of a rocker the hand does not see the crank for a moment, but its pull holds
+// it; the spin of the rod it never sees.
+TEST(InverseKinematics, EndsAtTheDeadCentreOfARockerWhoseRodSpins) {
+  const KinematicTree tree = BuildKinematicTree(Example("rssr"));
+  VectorXd q = StartCoordinates(tree);
+  ASSERT_TRUE(Assemble(tree, {}, &q).closed);
+  InverseKinematics problem(tree, GraspFrameOf(tree, 1));
+  const Posed start = problem.GraspPose(q);
+  const Posed X_WP = tree.placements[FindJoint(tree.mechanism, "output")].X_AF;
+  const int crank = CoordinateIndex(tree, FindJoint(tree.mechanism, "input"), 0);
+  for (const double angle : {-0.2, -0.7}) {
+    const Matrix3d turn = Eigen::AngleAxisd(angle, Vector3d::UnitZ()).toRotationMatrix();
+    const Matrix3d R = X_WP.R * turn * X_WP.R.transpose();
+    problem.SetTarget(Posed{R, X_WP.p - R * X_WP.p} * start);
+    const Summary exact = Solve(problem, NullspaceOptions{.stopping = kTight}, q);
+    ASSERT_TRUE(exact.converged()) << exact.BriefReport();
+    EXPECT_GT(exact.objective, 1e-5);  // beyond the dead centre
+    for (Backend backend : {Backend::kNullspace, Backend::kAugmentedLagrangian,
+                            Backend::kCeresExact, Backend::kIpopt, Backend::kKinsol}) {
+      const Summary summary = Solve(backend, problem, {1e-10, 1e-9, 200}, q);
+      if (summary.status == SolveStatus::kUnavailable) continue;
+      EXPECT_TRUE(summary.converged()) << angle << " " << summary.BriefReport();
+      EXPECT_NEAR(summary.x[crank], exact.x[crank], 1e-6) << summary.solver;
+    }
+  }
+}
+
 TEST(InverseKinematics, UnequalRotationalWeightsNeedTheExactDerivative) {
   const KinematicTree tree = BuildKinematicTree(Example("bennett"));
   VectorXd q = StartCoordinates(tree);

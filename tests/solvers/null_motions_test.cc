@@ -71,6 +71,25 @@ TEST(NullMotions, StiffenAMatrixAlongThemAndTakeOutItsCoupling) {
   EXPECT_LT((S - expected).norm(), kRounding);
 }
 
+TEST(NullMotions, AreLessThoseThatOnlyADeadCentreHidesAndThatCurve) {
+  Linearization at_x = ThreeOfFive();
+  NullMotions null(5);
+  at_x.C.row(1) << 0, 0, 1, 1, 0;
+  null.Find(at_x, NoneOf(5));
+  ASSERT_EQ(null.count(), 1);
+  const VectorXd spin = null.motion(0);
+  // At a dead centre the last row is hidden, and a force makes the motion that it told stiff.
+  const VectorXd row = at_x.C.row(1);
+  at_x.C.row(1).setZero();
+  null.Find(at_x, NoneOf(5));
+  ASSERT_EQ(null.count(), 2);
+  MatrixXd S = 0.3 * row * row.transpose();
+  null.Stiffen(7, &S);
+  ASSERT_EQ(null.count(), 1);
+  EXPECT_NEAR(std::abs(null.motion(0).dot(spin)), 1, kRounding);
+  EXPECT_LT((S - 0.3 * row * row.transpose() - 7 * spin * spin.transpose()).norm(), 1e-11);
+}
+
 /// The point of a plane arm of three links of unit length, one more than a target needs: its links
 /// turn in a way that the point does not see.
 class SurplusArm final : public ConstrainedLeastSquares {
