@@ -159,17 +159,17 @@ class UnseenWalk {
   VectorXd q_;
 };
 
-/// The nearest pose on the way of a single unseen motion, to one side.
+/// The nearest pose on the way of one of the unseen motions, to one side.
 VectorXd NearestOnTheWay(InverseKinematics* problem, const UnseenMotions& unseen, const VectorXd& q,
-                         const VectorXd& goal, double side) {
-  constexpr double kStride = 0.1, kLongestWay = 25;  // [rad, characteristic lengths]
+                         const VectorXd& goal, const VectorXd& stride) {
+  constexpr double kLongestWay = 25;  // [rad, characteristic lengths]
   UnseenWalk walk(problem, unseen, q);
   VectorXd nearest = q;
   double least = walk.Distance(goal);
-  for (double way = 0; way < kLongestWay; way += kStride) {
-    if (!walk.Step(VectorXd::Constant(1, side * kStride))) break;
+  for (double way = 0; way < kLongestWay; way += stride.norm()) {
+    if (!walk.Step(stride)) break;
     if (walk.Distance(goal) < least) least = walk.Distance(goal), nearest = walk.q();
-    if (way > kStride && walk.Distance(q) < kStride / 2) break;  // once round
+    if (way > stride.norm() && walk.Distance(q) < stride.norm() / 2) break;  // once round
   }
   return nearest;
 }
@@ -190,18 +190,23 @@ UnseenMotions FindUnseenMotions(InverseKinematics* problem, const VectorXd& q) {
 
 VectorXd NearestAlongUnseen(InverseKinematics* problem, const VectorXd& q, const VectorXd& goal,
                             double enough) {
+  constexpr double kStride = 0.1;  // [rad, characteristic lengths]
   const UnseenMotions unseen = FindUnseenMotions(problem, q);
   if (unseen.count() == 0) return q;
   UnseenWalk walk(problem, unseen, q);
   walk.Approach(goal);
   VectorXd nearest = walk.q();
-  if (unseen.count() > 1) return nearest;
-  for (const double side : {1.0, -1.0}) {
-    if (ConfigurationDistance(problem->tree(), nearest, goal) <= enough) break;
-    const VectorXd start = NearestOnTheWay(problem, unseen, q, goal, side);
+  double least = walk.Distance(goal);
+  for (int k = 0; k < 2 * unseen.count() && least > enough; ++k) {
+    const UnseenMotions here = FindUnseenMotions(problem, nearest);
+    if (here.count() == 0) break;
+    const double side = k % 2 == 0 ? kStride : -kStride;
+    const VectorXd stride = side * VectorXd::Unit(here.count(), (k / 2) % here.count());
+    const VectorXd start = NearestOnTheWay(problem, here, nearest, goal, stride);
     UnseenWalk from_there(problem, FindUnseenMotions(problem, start), start);
     from_there.Approach(goal);
-    if (from_there.Distance(goal) < ConfigurationDistance(problem->tree(), nearest, goal)) {
+    if (from_there.Distance(goal) < least) {
+      least = from_there.Distance(goal);
       nearest = from_there.q();
     }
   }

@@ -23,8 +23,8 @@ UnseenMotions FindUnseenMotions(InverseKinematics* problem, const VectorXd& q);
 
 /// Moves the closed pose q along its unseen motions, hand and loops as they are, to where it is
 /// nearest to `goal` (ConfigurationDistance). The way downhill is taken; where that ends farther
-/// from the goal than `enough`, and one motion is unseen, all of its way is searched. Without any,
-/// q is returned. Joint limits are not looked at.
+/// from the goal than `enough`, the whole way of each motion is searched, one after the other.
+/// Without any, q is returned. Joint limits are not looked at.
 VectorXd NearestAlongUnseen(InverseKinematics* problem, const VectorXd& q, const VectorXd& goal,
                             double enough = 1e-4);
 
