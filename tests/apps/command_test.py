@@ -234,7 +234,7 @@ class Ik(InFolder):
 
     def test_tells_the_branch_of_a_rocker_whatever_its_rod_does(self):
         # The rod between two balls spins as each solver leaves it; the crank tells the branch.
-        for turn in (-7, 5, 20):
+        for turn in (5, 12, 20):
             target = skew_rocker(1.422806772461814 + math.radians(turn))
             cranks = []
             for solver in ("nullspace", "augmented_lagrangian", "ceres_exact", "ipopt", "penalty"):
