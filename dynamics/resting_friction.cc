@@ -1,0 +1,145 @@
+#include "vmech/dynamics/resting_friction.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "vmech/dynamics/passive.h"
+#include "vmech/kinematics/linear_algebra.h"
+
+namespace vmech {
+namespace {
+
+/// Exact after one for a single drive or a single contact.
+constexpr int kReweighings = 40;
+
+bool IsShift(const LoadModel& model, int v) {
+  for (const TreeNode& node : model.tree.nodes) {
+    if (node.v == v) return node.motion == NodeMotion::kPrismatic;
+  }
+  return false;
+}
+
+bool HandStands(const LoadModel& model, const Motion& motion, size_t pose) {
+  Vector6d V = motion.hand[pose].V_WH;
+  V.head<3>() /= model.tree.length;
+  return V.cwiseAbs().maxCoeff() <= kRest * motion.speed;
+}
+
+/// The limits of all resting contacts as the mechanism begins to move with `rate` times the creep.
+void TakeLimits(const LoadModel& model, const VectorXd& rate, LoadWorkspace<double>* ws) {
+  for (RestingContact& contact : ws->resting) {
+    const Joint& joint = model.tree.mechanism.joints[contact.joint];
+    const JointLoad<double>& load = ws->loads[contact.joint];
+    const Vector3d creep = contact.creep * rate;
+    contact.limited = FrictionLimits(joint, load.W_F, load.position, creep).asDiagonal() *
+                      contact.creep;
+  }
+}
+
+/// y of the formula above for the weights that the contacts have.
+VectorXd WeighedCreep(const VectorXd& needed, const std::vector<RestingContact>& contacts) {
+  MatrixXd A = MatrixXd::Zero(needed.size(), needed.size());
+  for (const RestingContact& contact : contacts) {
+    if (contact.weight == 0) continue;
+    A += contact.limited.transpose() * contact.limited / contact.weight;
+  }
+  return SolveSymmetric(A, needed);
+}
+
+/// Weights in proportion to |f_c n_c y|.
+void Reweigh(const VectorXd& y, std::vector<RestingContact>* contacts) {
+  double sum = 0;
+  for (const RestingContact& contact : *contacts) sum += (contact.limited * y).norm();
+  if (sum == 0) return;
+  for (RestingContact& contact : *contacts) contact.weight = (contact.limited * y).norm() / sum;
+}
+
+/// The largest share of what it can exert that any contact would have to.
+double LargestShare(const VectorXd& y, const std::vector<RestingContact>& contacts) {
+  double share = 0;
+  for (const RestingContact& contact : contacts) {
+    if (contact.weight == 0) continue;
+    share = std::max(share, (contact.limited * y).norm() / contact.weight);
+  }
+  return share;
+}
+
+}  // namespace
+
+std::vector<int> StandingDrives(const LoadModel& model, const Motion& motion, size_t pose) {
+  if (model.hand) {
+    return HandStands(model, motion, pose) ? model.partition.driven : std::vector<int>();
+  }
+  std::vector<int> standing;
+  for (size_t k = 0; k < model.drives.size(); ++k) {
+    const int v = model.partition.driven[k];
+    const double speed = motion.drives[pose * model.drives.size() + k].velocity;
+    if (std::abs(speed) <= kRest * motion.speed * CreepSpeed(model, v)) standing.push_back(v);
+  }
+  return standing;
+}
+
+bool AnyStands(const LoadModel& model, const Motion& motion, size_t pose, int lanes) {
+  for (int lane = 0; lane < lanes; ++lane) {
+    if (!StandingDrives(model, motion, pose + lane).empty()) return true;
+  }
+  return false;
+}
+
+double CreepSpeed(const LoadModel& model, int v) {
+  return IsShift(model, v) ? model.tree.length : 1;
+}
+
+template <typename T>
+void FindContacts(const LoadModel& model, const Motion& motion, LoadWorkspace<T>* ws) {
+  ws->resting.clear();
+  ws->held_by_friction = false;
+  const double slowest = kRest * motion.speed, length = model.tree.length;
+  for (size_t j = 0; j < ws->loads.size(); ++j) {
+    const Joint& joint = model.tree.mechanism.joints[j];
+    if (!HasDryFriction(joint)) continue;
+    ws->sliding[j] = SlidingRates(joint.type, ws->loads[j].rate, slowest, length);
+    if constexpr (kLanesOf<T> == 1) {
+      for (const SlidingContact& freedoms : ContactsOf(joint.type)) {
+        if (!ws->sliding[j].segment(freedoms.first, freedoms.count).isZero(0)) continue;
+        RestingContact contact{static_cast<int>(j), Eigen::Matrix3Xd::Zero(3, ws->creep.cols()), {}, 1};
+        for (Eigen::Index k = 0; k < ws->creep.cols(); ++k) {
+          const Vector3d& rate = ws->creep_rates[k * ws->loads.size() + j];
+          contact.creep.col(k).segment(freedoms.first, freedoms.count) =
+              SlidingRates(joint.type, rate, kRest, length)
+                  .segment(freedoms.first, freedoms.count);
+        }
+        if (!contact.creep.isZero(0)) ws->resting.push_back(contact);
+      }
+    }
+  }
+}
+
+void HoldByFriction(const LoadModel& model, LoadWorkspace<double>* ws) {
+  const VectorXd needed = ws->creep.transpose() * (ws->tau - ws->passive);
+  std::vector<RestingContact>& contacts = ws->resting;
+  for (RestingContact& contact : contacts) contact.weight = 1.0 / contacts.size();
+  VectorXd y = VectorXd::Zero(needed.size());
+  for (int i = 0; i < kReweighings; ++i) {
+    TakeLimits(model, -y, ws);
+    y = WeighedCreep(needed, contacts);
+    if (i + 1 < kReweighings) Reweigh(y, &contacts);
+  }
+  const double share = LargestShare(y, contacts);
+  VectorXd left = needed;
+  for (const RestingContact& contact : contacts) {
+    if (contact.weight == 0) continue;
+    const Joint& joint = model.tree.mechanism.joints[contact.joint];
+    const JointLoad<double>& load = ws->loads[contact.joint];
+    const Vector3d limits = FrictionLimits<double>(joint, load.W_F, load.position, -contact.creep * y);
+    const Vector3d held = limits.asDiagonal() * contact.limited * y / contact.weight;
+    ws->along[contact.joint] += held / std::max(share, 1.0);
+    left -= contact.creep.transpose() * held;
+  }
+  ws->held_by_friction = share > kRest && share <= 1 && left.norm() <= kRest * needed.norm();
+}
+
+template void FindContacts<double>(const LoadModel&, const Motion&, LoadWorkspace<double>*);
+template void FindContacts<Packet>(const LoadModel&, const Motion&, LoadWorkspace<Packet>*);
+
+}  // namespace vmech
