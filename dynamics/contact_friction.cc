@@ -69,8 +69,7 @@ Vector3<T> LoadLimits(const Joint& joint, const Wrench<T>& W, const Vector3<T>& 
     case JointType::kRevolute:
       return {PinLimit(friction, z, W), zero, zero};
     case JointType::kPrismatic: {
-      const T sides =
-          friction.width == 0 ? zero : T(2 / friction.width) * abs(W.moment.z());
+      const T sides = friction.width == 0 ? zero : T(2 / friction.width) * abs(W.moment.z());
       return {mu * (SupportLoad(z, W, friction.length) + sides), zero, zero};
     }
     case JointType::kCylindrical: {

@@ -12,8 +12,9 @@ struct JointLoad;
 
 /// Joint wrenches and the friction that depends on them: x = G(x) for the wrenches x of all joints,
 /// moments divided by a length, by fixed-point iteration with Aitken's relaxation,
-/// x += beta r, r = G(x) - x, which converges where the plain iteration swings or creeps. Without a
-/// solution the mechanism locks itself.
+/// x += beta r, r = G(x) - x, which converges where the plain iteration swings or creeps; where it
+/// does not, by Anderson's mixing of the last few iterates [Walker and Ni 2011]. Without a solution
+/// the mechanism locks itself.
 class FrictionIteration {
  public:
   /// `pass` replaces the wrenches of `loads` by G of them. Returns false where they do not settle.
@@ -21,10 +22,15 @@ class FrictionIteration {
                          const std::function<void()>& pass);
 
  private:
+  /// Iterates with x += Step; false if it does not settle.
+  bool Iterate(double length, std::vector<JointLoad<double>>* loads,
+               const std::function<void()>& pass, void (FrictionIteration::*step)(int));
   bool Settled() const;
-  void Relax(bool first);
+  void RelaxByAitken(int iteration);
+  void MixByAnderson(int iteration);
 
-  VectorXd x_, G_, residual_, last_residual_;
+  VectorXd x_, G_, residual_, last_residual_, start_;
+  MatrixXd steps_, changes_;  ///< of x and of r, of the last iterations
   double beta_ = 0;
 };
 

@@ -48,9 +48,8 @@ void WarnOfJams(const Mechanism& mechanism, LoadStudyResult* result) {
 void WarnOfSelfLocking(const Mechanism& mechanism, LoadStudyResult* result) {
   for (const Joint& joint : mechanism.joints) {
     if (!IsSelfLocking(joint)) continue;
-    result->warnings.push_back(
-        fmt::format("screw '{}' is self-locking: no axial force turns it ({})", joint.name,
-                    AnglesOf(joint)));
+    result->warnings.push_back(fmt::format(
+        "screw '{}' is self-locking: no axial force turns it ({})", joint.name, AnglesOf(joint)));
   }
   const auto held = std::count_if(result->poses.begin(), result->poses.end(),
                                   [](const PoseLoads& pose) { return pose.held_by_friction; });

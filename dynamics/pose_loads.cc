@@ -300,8 +300,8 @@ void FindEquilibrium(const LoadModel& model, LoadWorkspace<T>* ws) {
   EquilibriumPass(model, ws);
   if constexpr (kSinglePose<T>) {
     if (!model.has_load_friction) return;
-    const bool settled = ws->friction.Run(model.tree.length, &ws->loads,
-                                          [&] { EquilibriumPass(model, ws); });
+    const bool settled =
+        ws->friction.Run(model.tree.length, &ws->loads, [&] { EquilibriumPass(model, ws); });
     ws->locking_joint = LockingJoint(model, *ws, settled);
     ws->jammed = !settled || ws->locking_joint >= 0;
   }
@@ -369,8 +369,7 @@ bool RunsInPackets(const LoadModel& model) {
 template <typename T>
 bool EvaluatePoseLoads(const LoadModel& model, const Motion& motion, size_t pose,
                        LoadWorkspace<T>* ws) {
-  if (!kSinglePose<T> && model.has_dry_friction &&
-      AnyStands(model, motion, pose, kLanesOf<T>)) {
+  if (!kSinglePose<T> && model.has_dry_friction && AnyStands(model, motion, pose, kLanesOf<T>)) {
     return false;
   }
   GatherCoordinates(motion, pose, ws);

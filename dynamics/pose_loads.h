@@ -87,6 +87,8 @@ struct LoadWorkspace {
   MatrixXd creep;    ///< [nv, standing drives]: the motion as each of them begins to move
   std::vector<Vector3d> creep_rates;  ///< [standing drives * joints]
   std::vector<RestingContact> resting;
+  VectorXd holding;  ///< [standing drives] y of resting_friction.h
+  int holding_passes = 0;
   FrictionIteration friction;
 
   // What comes out, beside `tree`.

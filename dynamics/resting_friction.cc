@@ -9,8 +9,13 @@
 namespace vmech {
 namespace {
 
-/// Exact after one for a single drive or a single contact.
 constexpr int kReweighings = 40;
+/// With one drive the weights are exact after two: one finds the sense of the motion, and with it
+/// which way a thread is turned.
+constexpr int kReweighingsOfOneDrive = 2;
+/// So many passes of the friction iteration choose weights; then they stay, so that it settles.
+/// Any weights hold exactly.
+constexpr int kWeighingPasses = 10;
 
 bool IsShift(const LoadModel& model, int v) {
   for (const TreeNode& node : model.tree.nodes) {
@@ -31,8 +36,8 @@ void TakeLimits(const LoadModel& model, const VectorXd& rate, LoadWorkspace<doub
     const Joint& joint = model.tree.mechanism.joints[contact.joint];
     const JointLoad<double>& load = ws->loads[contact.joint];
     const Vector3d creep = contact.creep * rate;
-    contact.limited = FrictionLimits(joint, load.W_F, load.position, creep).asDiagonal() *
-                      contact.creep;
+    contact.limited =
+        FrictionLimits(joint, load.W_F, load.position, creep).asDiagonal() * contact.creep;
   }
 }
 
@@ -94,6 +99,7 @@ template <typename T>
 void FindContacts(const LoadModel& model, const Motion& motion, LoadWorkspace<T>* ws) {
   ws->resting.clear();
   ws->held_by_friction = false;
+  ws->holding_passes = 0;
   const double slowest = kRest * motion.speed, length = model.tree.length;
   for (size_t j = 0; j < ws->loads.size(); ++j) {
     const Joint& joint = model.tree.mechanism.joints[j];
@@ -102,28 +108,34 @@ void FindContacts(const LoadModel& model, const Motion& motion, LoadWorkspace<T>
     if constexpr (kLanesOf<T> == 1) {
       for (const SlidingContact& freedoms : ContactsOf(joint.type)) {
         if (!ws->sliding[j].segment(freedoms.first, freedoms.count).isZero(0)) continue;
-        RestingContact contact{static_cast<int>(j), Eigen::Matrix3Xd::Zero(3, ws->creep.cols()), {}, 1};
+        RestingContact contact{
+            static_cast<int>(j), Eigen::Matrix3Xd::Zero(3, ws->creep.cols()), {}, 1};
         for (Eigen::Index k = 0; k < ws->creep.cols(); ++k) {
           const Vector3d& rate = ws->creep_rates[k * ws->loads.size() + j];
           contact.creep.col(k).segment(freedoms.first, freedoms.count) =
-              SlidingRates(joint.type, rate, kRest, length)
-                  .segment(freedoms.first, freedoms.count);
+              SlidingRates(joint.type, rate, kRest, length).segment(freedoms.first, freedoms.count);
         }
         if (!contact.creep.isZero(0)) ws->resting.push_back(contact);
       }
     }
+  }
+  ws->holding.setZero(ws->creep.cols());
+  for (RestingContact& contact : ws->resting) {
+    contact.weight = 1 / static_cast<double>(ws->resting.size());
   }
 }
 
 void HoldByFriction(const LoadModel& model, LoadWorkspace<double>* ws) {
   const VectorXd needed = ws->creep.transpose() * (ws->tau - ws->passive);
   std::vector<RestingContact>& contacts = ws->resting;
-  for (RestingContact& contact : contacts) contact.weight = 1.0 / contacts.size();
-  VectorXd y = VectorXd::Zero(needed.size());
-  for (int i = 0; i < kReweighings; ++i) {
+  const int reweighings = needed.size() == 1                       ? kReweighingsOfOneDrive
+                          : ws->holding_passes++ < kWeighingPasses ? kReweighings
+                                                                   : 0;
+  VectorXd& y = ws->holding;
+  for (int i = 0; i <= reweighings; ++i) {
     TakeLimits(model, -y, ws);
     y = WeighedCreep(needed, contacts);
-    if (i + 1 < kReweighings) Reweigh(y, &contacts);
+    if (i < reweighings) Reweigh(y, &contacts);
   }
   const double share = LargestShare(y, contacts);
   VectorXd left = needed;
@@ -131,7 +143,8 @@ void HoldByFriction(const LoadModel& model, LoadWorkspace<double>* ws) {
     if (contact.weight == 0) continue;
     const Joint& joint = model.tree.mechanism.joints[contact.joint];
     const JointLoad<double>& load = ws->loads[contact.joint];
-    const Vector3d limits = FrictionLimits<double>(joint, load.W_F, load.position, -contact.creep * y);
+    const Vector3d limits =
+        FrictionLimits<double>(joint, load.W_F, load.position, -contact.creep * y);
     const Vector3d held = limits.asDiagonal() * contact.limited * y / contact.weight;
     ws->along[contact.joint] += held / std::max(share, 1.0);
     left -= contact.creep.transpose() * held;

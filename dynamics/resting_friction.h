@@ -6,9 +6,9 @@
 
 namespace vmech {
 
-/// Dry friction at rest is what it must be to hold, within what it can be. Let n_c be the rates of a
-/// resting contact c per unit speed of the drives that stand still (columns), f_c its limits, and e
-/// what those drives would have to exert without friction at rest. Friction
+/// Dry friction at rest is what it must be to hold, within what it can be. Let n_c be the rates of
+/// a resting contact c per unit speed of the drives that stand still (columns), f_c its limits, and
+/// e what those drives would have to exert without friction at rest. Friction
 ///
 ///   F_c = f_c^2 n_c y / w_c,   (sum_c n_c' f_c^2 n_c / w_c) y = e,   sum_c w_c = 1
 ///

@@ -323,8 +323,8 @@ class Tracker {
       }
     }
     for (const HandSample& hand : motion_.hand) {
-      speed = std::max({speed, hand.V_WH.head<3>().norm() / tree_.length,
-                        hand.V_WH.tail<3>().norm()});
+      speed =
+          std::max({speed, hand.V_WH.head<3>().norm() / tree_.length, hand.V_WH.tail<3>().norm()});
     }
     return speed;
   }

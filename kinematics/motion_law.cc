@@ -194,9 +194,10 @@ void MotionLaw::AddSpline(const std::vector<double>& times, const std::vector<do
     // The last row of a dwell belongs to the dwell.
     const double from =
         leaves_rest ? std::nextafter(times[i], std::numeric_limits<double>::infinity()) : times[i];
-    pieces_.push_back({from,
-                       times[i],
-                       {values[i], leaves_rest ? 0 : slope, M[i] / 2, (M[i + 1] - M[i]) / (6 * h)}});
+    pieces_.push_back(
+        {from,
+         times[i],
+         {values[i], leaves_rest ? 0 : slope, M[i] / 2, (M[i + 1] - M[i]) / (6 * h)}});
   }
 }
 

@@ -70,8 +70,9 @@ std::vector<bool> FindDwells(const std::vector<double>& times,
     size_t last = first;
     while (last + 1 < n && rows.Equal(last, last + 1)) ++last;
     const bool at_end = first == 0 || last + 1 == n;
-    const bool dwell = last - first > 1 || (last > first && (at_end || rows.GoesOn(first) ||
-                                                             RestsAtTurn(rows, first, n)));
+    const bool dwell =
+        last - first > 1 ||
+        (last > first && (at_end || rows.GoesOn(first) || RestsAtTurn(rows, first, n)));
     for (size_t i = first; dwell && i < last; ++i) dwells[i] = true;
     first = last > first ? last : first + 1;
   }

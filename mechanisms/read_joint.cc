@@ -150,8 +150,7 @@ void ReadLoadFriction(const Node& node, const Units& units, Joint* joint) {
   ReadFrictionLength(node["thrust_radius"], units, used.thrust_radius,
                      "this joint has no collars that take a thrust", &friction.thrust_radius);
   ReadFrictionLength(node["length"], units, used.length,
-                     "this joint has no two supports that hold a tilting couple",
-                     &friction.length);
+                     "this joint has no two supports that hold a tilting couple", &friction.length);
   ReadFrictionLength(node["width"], units, used.width,
                      "only a slide has faces that keep it from turning", &friction.width);
 }

@@ -161,8 +161,9 @@ TEST(Reader, ConvertsEachFreedomByItsKind) {
 
 TEST(Reader, TakesTheLengthsOfFrictionThatATypeHas) {
   const LoadFriction pin =
-      JointOf("type: revolute, friction: {coefficient: 0.1, radius: 4, thrust_radius: 6, length: 8}",
-              "length: mm")
+      JointOf(
+          "type: revolute, friction: {coefficient: 0.1, radius: 4, thrust_radius: 6, length: 8}",
+          "length: mm")
           .load_friction;
   EXPECT_NEAR(pin.thrust_radius, 0.006, kRounding);
   EXPECT_NEAR(pin.length, 0.008, kRounding);
