@@ -8,7 +8,7 @@
 #include "vmech/dynamics/idle_freedoms.h"
 #include "vmech/dynamics/newton_euler.h"
 #include "vmech/dynamics/paper_joint.h"
-#include "vmech/dynamics/passive.h"
+#include "vmech/dynamics/passive_loads.h"
 #include "vmech/dynamics/power.h"
 #include "vmech/dynamics/resting_friction.h"
 #include "vmech/kinematics/forward_kinematics.h"
@@ -160,45 +160,6 @@ void JointPositions(const LoadModel& model, const Motion& motion, size_t pose,
   }
 }
 
-/// Takes the forces along the joints' freedoms to the tree and to the cut joints.
-template <typename T>
-void SpreadPassive(const LoadModel& model, LoadWorkspace<T>* ws) {
-  for (const TreeNode& node : model.tree.nodes) {
-    for (int k = 0; k < VelocitiesOf(node.motion); ++k) {
-      ws->passive[node.v + k] = ws->along[node.joint][node.freedom + k];
-    }
-  }
-  for (size_t l = 0; l < model.tree.loops.size(); ++l) {
-    const CutJointFreedoms<T> freedoms = FreedomsOfCutJoint(model.tree.loops[l], ws->tree.loops[l]);
-    const Vector3<T>& along = ws->along[model.tree.loops[l].joint];
-    Vector6<T> W_F = Vector6<T>::Zero();
-    for (int k = 0; k < freedoms.count; ++k) {
-      // A twist of unit rate against which the force does work; exact for the screw as well.
-      const Vector6<T>& S = freedoms.twist_F[k];
-      W_F += S * (along[k] / S.squaredNorm());
-    }
-    ws->cut_passive[l] = {W_F.template head<3>(), W_F.template tail<3>()};
-  }
-}
-
-/// Springs, and the friction of what slides, under the joint wrenches of ws->loads.
-template <typename T>
-void PassiveForces(const LoadModel& model, LoadWorkspace<T>* ws) {
-  for (size_t j = 0; j < ws->loads.size(); ++j) {
-    const Joint& joint = model.tree.mechanism.joints[j];
-    const JointLoad<T>& load = ws->loads[j];
-    ws->along[j].setZero();
-    if (HasDryFriction(joint)) {
-      const Vector3<T> limits = FrictionLimits(joint, load.W_F, load.position, ws->sliding[j]);
-      ws->along[j] = SlidingFriction(joint.type, limits, ws->sliding[j]);
-    }
-    for (int k = 0; k < static_cast<int>(joint.passive.size()); ++k) {
-      ws->along[j][k] += SpringForce(joint.passive[k], load.position[k], load.rate[k]);
-    }
-  }
-  SpreadPassive(model, ws);
-}
-
 template <typename T>
 void ApplyAt(int node, const Wrench<T>& W, const Vector3<T>& p_W, LoadWorkspace<T>* ws) {
   if (node >= 0) ws->applied[node] += W.ShiftedBy(p_W - ws->tree.nodes[node].X_WB.p);
@@ -274,24 +235,6 @@ void EquilibriumPass(const LoadModel& model, LoadWorkspace<T>* ws) {
   for (size_t j = 0; j < ws->joints.size(); ++j) {
     ws->loads[j].W_F = ws->joints[j].W_M.In(ws->joints[j].R_WF);
   }
-}
-
-/// Where friction locks the mechanism: at a thread that no torque can raise; where nothing settles,
-/// at the joint whose friction takes the most power. -1 if nothing locks.
-int LockingJoint(const LoadModel& model, const LoadWorkspace<double>& ws, bool settled) {
-  int locking = -1;
-  double largest = 0;
-  for (size_t j = 0; j < ws.loads.size(); ++j) {
-    const Joint& joint = model.tree.mechanism.joints[j];
-    if (ThreadLocks(joint, ws.loads[j].W_F, ws.sliding[j][0])) return static_cast<int>(j);
-    const Vector3d limits =
-        FrictionLimits(joint, ws.loads[j].W_F, ws.loads[j].position, ws.sliding[j]);
-    const double power = limits.cwiseProduct(ws.sliding[j]).norm();
-    if (settled || joint.load_friction.coefficient == 0 || power <= largest) continue;
-    largest = power;
-    locking = static_cast<int>(j);
-  }
-  return locking;
 }
 
 template <typename T>

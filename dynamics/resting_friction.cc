@@ -30,15 +30,12 @@ bool HandStands(const LoadModel& model, const Motion& motion, size_t pose) {
   return V.cwiseAbs().maxCoeff() <= kRest * motion.speed;
 }
 
-/// The limits of all resting contacts as the mechanism begins to move with `rate` times the creep.
-void TakeLimits(const LoadModel& model, const VectorXd& rate, LoadWorkspace<double>* ws) {
-  for (RestingContact& contact : ws->resting) {
-    const Joint& joint = model.tree.mechanism.joints[contact.joint];
-    const JointLoad<double>& load = ws->loads[contact.joint];
-    const Vector3d creep = contact.creep * rate;
-    contact.limited =
-        FrictionLimits(joint, load.W_F, load.position, creep).asDiagonal() * contact.creep;
-  }
+/// The limits of a resting contact as the mechanism begins to move with `rate` times the creep.
+Vector3d LimitsOf(const LoadModel& model, const RestingContact& contact, const VectorXd& rate,
+                  const LoadWorkspace<double>& ws) {
+  const Joint& joint = model.tree.mechanism.joints[contact.joint];
+  const JointLoad<double>& load = ws.loads[contact.joint];
+  return FrictionLimits<double>(joint, load.W_F, load.position, contact.creep * rate);
 }
 
 /// y of the formula above for the weights that the contacts have.
@@ -67,6 +64,46 @@ double LargestShare(const VectorXd& y, const std::vector<RestingContact>& contac
     share = std::max(share, (contact.limited * y).norm() / contact.weight);
   }
   return share;
+}
+
+/// Solves for ws->holding with weights that even out the shares. Returns the y by which the limits
+/// were taken.
+VectorXd ChooseWeights(const LoadModel& model, const VectorXd& needed, LoadWorkspace<double>* ws) {
+  int reweighings = 0;
+  if (needed.size() == 1) {
+    reweighings = kReweighingsOfOneDrive;
+  } else if (ws->holding_passes++ < kWeighingPasses) {
+    reweighings = kReweighings;
+  }
+  VectorXd before;
+  for (int i = 0; i <= reweighings; ++i) {
+    before = ws->holding;
+    for (RestingContact& contact : ws->resting) {
+      contact.limited = LimitsOf(model, contact, -before, *ws).asDiagonal() * contact.creep;
+    }
+    ws->holding = WeighedCreep(needed, ws->resting);
+    if (i < reweighings) Reweigh(ws->holding, &ws->resting);
+  }
+  return before;
+}
+
+/// The contacts of a joint that rest and would move with the creep. Rates of it that are rounding
+/// are none.
+void AddRestingContacts(const LoadModel& model, size_t j, LoadWorkspace<double>* ws) {
+  const JointType type = model.tree.mechanism.joints[j].type;
+  for (const SlidingContact& freedoms : ContactsOf(type)) {
+    if (!ws->sliding[j].segment(freedoms.first, freedoms.count).isZero(0)) continue;
+    RestingContact contact;
+    contact.joint = static_cast<int>(j);
+    contact.creep = Eigen::Matrix3Xd::Zero(3, ws->creep.cols());
+    for (Eigen::Index k = 0; k < ws->creep.cols(); ++k) {
+      const Vector3d& rate = ws->creep_rates[static_cast<size_t>(k) * ws->loads.size() + j];
+      contact.creep.col(k).segment(freedoms.first, freedoms.count) =
+          SlidingRates(type, rate, kRest, model.tree.length)
+              .segment(freedoms.first, freedoms.count);
+    }
+    if (!contact.creep.isZero(0)) ws->resting.push_back(contact);
+  }
 }
 
 }  // namespace
@@ -100,24 +137,12 @@ void FindContacts(const LoadModel& model, const Motion& motion, LoadWorkspace<T>
   ws->resting.clear();
   ws->held_by_friction = false;
   ws->holding_passes = 0;
-  const double slowest = kRest * motion.speed, length = model.tree.length;
   for (size_t j = 0; j < ws->loads.size(); ++j) {
     const Joint& joint = model.tree.mechanism.joints[j];
     if (!HasDryFriction(joint)) continue;
-    ws->sliding[j] = SlidingRates(joint.type, ws->loads[j].rate, slowest, length);
-    if constexpr (kLanesOf<T> == 1) {
-      for (const SlidingContact& freedoms : ContactsOf(joint.type)) {
-        if (!ws->sliding[j].segment(freedoms.first, freedoms.count).isZero(0)) continue;
-        RestingContact contact{
-            static_cast<int>(j), Eigen::Matrix3Xd::Zero(3, ws->creep.cols()), {}, 1};
-        for (Eigen::Index k = 0; k < ws->creep.cols(); ++k) {
-          const Vector3d& rate = ws->creep_rates[k * ws->loads.size() + j];
-          contact.creep.col(k).segment(freedoms.first, freedoms.count) =
-              SlidingRates(joint.type, rate, kRest, length).segment(freedoms.first, freedoms.count);
-        }
-        if (!contact.creep.isZero(0)) ws->resting.push_back(contact);
-      }
-    }
+    ws->sliding[j] =
+        SlidingRates(joint.type, ws->loads[j].rate, kRest * motion.speed, model.tree.length);
+    if constexpr (kLanesOf<T> == 1) AddRestingContacts(model, j, ws);
   }
   ws->holding.setZero(ws->creep.cols());
   for (RestingContact& contact : ws->resting) {
@@ -127,24 +152,13 @@ void FindContacts(const LoadModel& model, const Motion& motion, LoadWorkspace<T>
 
 void HoldByFriction(const LoadModel& model, LoadWorkspace<double>* ws) {
   const VectorXd needed = ws->creep.transpose() * (ws->tau - ws->passive);
-  std::vector<RestingContact>& contacts = ws->resting;
-  const int reweighings = needed.size() == 1                       ? kReweighingsOfOneDrive
-                          : ws->holding_passes++ < kWeighingPasses ? kReweighings
-                                                                   : 0;
-  VectorXd& y = ws->holding;
-  for (int i = 0; i <= reweighings; ++i) {
-    TakeLimits(model, -y, ws);
-    y = WeighedCreep(needed, contacts);
-    if (i < reweighings) Reweigh(y, &contacts);
-  }
-  const double share = LargestShare(y, contacts);
+  const VectorXd before = ChooseWeights(model, needed, ws);
+  const VectorXd& y = ws->holding;
+  const double share = LargestShare(y, ws->resting);
   VectorXd left = needed;
-  for (const RestingContact& contact : contacts) {
+  for (const RestingContact& contact : ws->resting) {
     if (contact.weight == 0) continue;
-    const Joint& joint = model.tree.mechanism.joints[contact.joint];
-    const JointLoad<double>& load = ws->loads[contact.joint];
-    const Vector3d limits =
-        FrictionLimits<double>(joint, load.W_F, load.position, -contact.creep * y);
+    const Vector3d limits = LimitsOf(model, contact, -before, *ws);
     const Vector3d held = limits.asDiagonal() * contact.limited * y / contact.weight;
     ws->along[contact.joint] += held / std::max(share, 1.0);
     left -= contact.creep.transpose() * held;
