@@ -57,7 +57,7 @@ Vector3d Pulled(double turn) {
 
 TEST(HandFriction, LetsABlockFollowItsPullStraight) {
   const Vector3d end = Pulled(0);
-  EXPECT_GT(end.norm(), 0.01);
+  EXPECT_GT(end.norm(), 0.005);
   EXPECT_NEAR(end.x() * 4 - end.y() * 3, 0, 1e-9);
   EXPECT_LT((Pulled(0.4) - end).norm(), 1e-9);
 }
