@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vmech/dynamics/contact_friction.h"
 #include "vmech/kinematics/forward_kinematics.h"
 #include "vmech/kinematics/rotation_error.h"
 #include "vmech/kinematics/screw_algebra.h"
@@ -122,8 +123,13 @@ void CoupledDynamics::ListFreedoms() {
   for (const TreeNode& node : tree_.nodes) {
     if (node.v < 0 || node.motion == NodeMotion::kSpherical) continue;
     const Joint& joint = tree_.mechanism.joints[node.joint];
-    const Freedom freedom{node.q, node.v, joint.passive[node.freedom], joint.lower[node.freedom],
-                          joint.upper[node.freedom]};
+    const bool alone = joint.type == JointType::kUniversal;  // two pins, each slides for itself
+    const Freedom freedom{node.q,
+                          node.v,
+                          joint.passive[node.freedom],
+                          joint.lower[node.freedom],
+                          joint.upper[node.freedom],
+                          3 * node.joint + (alone ? node.freedom : 0)};
     if (IsPassive(freedom.passive) || freedom.lower > -kNoLimit || freedom.upper < kNoLimit) {
       freedoms_.push_back(freedom);
     }
@@ -216,12 +222,22 @@ bool CoupledDynamics::SolveWithLimits(Solving how) noexcept {
   return true;
 }
 
-/// Springs and friction of the tree's joints; dry friction as the damper that it is at this speed.
+/// Springs and friction of the tree's joints; dry friction as the damper that it is at this speed,
+/// of all freedoms of a contact together.
 void CoupledDynamics::AddPassive() noexcept {
-  for (const auto& [q, v, passive, lower, upper, contact] : freedoms_) {
-    const double dry = passive.coulomb / std::max(std::abs(v_[v]), kSlowSliding);
-    A_(v, v) += T_ * passive.stiffness + passive.viscous + dry;
-    right_[v] -= passive.stiffness * (q_[q] - passive.rest);
+  for (size_t first = 0, end = 0; first < freedoms_.size(); first = end) {
+    double square = 0;
+    for (; end < freedoms_.size() && freedoms_[end].sliding == freedoms_[first].sliding; ++end) {
+      const double power = freedoms_[end].passive.coulomb * v_[freedoms_[end].v];
+      square += power * power;
+    }
+    const double power = std::sqrt(square);
+    for (size_t i = first; i < end; ++i) {
+      const auto& [q, v, passive, lower, upper, sliding, contact] = freedoms_[i];
+      const double dry = FrictionDamping(passive.coulomb, power, kSlowSliding);
+      A_(v, v) += T_ * passive.stiffness + passive.viscous + dry;
+      right_[v] -= passive.stiffness * (q_[q] - passive.rest);
+    }
   }
 }
 
@@ -242,7 +258,7 @@ bool CoupledDynamics::SolveVelocity(Solving how) noexcept {
 void CoupledDynamics::AddLimits() noexcept {
   limited_A_ = A_;
   limited_right_ = right_;
-  for (const auto& [q, v, passive, lower, upper, contact] : freedoms_) {
+  for (const auto& [q, v, passive, lower, upper, sliding, contact] : freedoms_) {
     if (contact == 0) continue;
     const double hold = kHardLimit * A_(v, v);
     limited_A_(v, v) += hold;
@@ -254,7 +270,7 @@ void CoupledDynamics::AddLimits() noexcept {
 bool CoupledDynamics::ChangeContacts() noexcept {
   bool changed = false;
   at_limit_ = false;
-  for (auto& [q, v, passive, lower, upper, contact] : freedoms_) {
+  for (auto& [q, v, passive, lower, upper, sliding, contact] : freedoms_) {
     const double end = q_[q] + T_ * next_v_[v];
     const double above = end - upper, below = lower - end;
     // A limit that holds is passed a little: it pulls where it is not.
@@ -350,7 +366,7 @@ void CoupledDynamics::AimAtClosure() noexcept {
 void CoupledDynamics::TakeInertia() noexcept {
   pose_.TakeMassMatrix(&M_);
   potential_ = pose_.WeightEnergy();
-  for (const auto& [q, v, passive, lower, upper, contact] : freedoms_) {
+  for (const auto& [q, v, passive, lower, upper, sliding, contact] : freedoms_) {
     const double length = q_[q] - passive.rest;
     potential_ += 0.5 * passive.stiffness * length * length;
   }

@@ -87,6 +87,7 @@ class CoupledDynamics {
     int q, v;
     Passive passive;
     double lower, upper;
+    int sliding;      // the same for all freedoms of one sliding contact
     int contact = 0;  // -1 at the lower limit, 1 at the upper
   };
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "vmech/dynamics/passive.h"
+#include "vmech/dynamics/contact_friction.h"
 #include "vmech/kinematics/linear_algebra.h"
 #include "vmech/kinematics/screw_algebra.h"
 #include "vmech/solvers/small_ldlt.h"
@@ -118,13 +118,32 @@ void HandDynamics::SolveMotion(const Vector6d& b, const VectorXd& d, VectorXd* x
   system_.Solve(A_, pose_.C(), right_, d, x);
 }
 
+/// |f v| of the contact in which a node's freedom slides, f its constant friction.
+double HandDynamics::SlidingPower(size_t node_index) const noexcept {
+  const TreeNode& node = tree_.nodes[node_index];
+  const Joint& joint = tree_.mechanism.joints[node.joint];
+  const int freedoms = static_cast<int>(joint.passive.size());
+  const size_t first =
+      node_index - static_cast<size_t>(node.reversed ? freedoms - 1 - node.freedom : node.freedom);
+  double square = 0;
+  for (size_t i = first; i < first + joint.passive.size(); ++i) {
+    if (joint.type == JointType::kUniversal && i != node_index) continue;  // two pins
+    const TreeNode& other = tree_.nodes[i];
+    const double power = joint.passive[other.freedom].coulomb * v_[other.v];
+    square += power * power;
+  }
+  return std::sqrt(square);
+}
+
 /// Takes from tau_ what springs, dampers and dry friction supply.
 void HandDynamics::PassiveForces() noexcept {
-  for (const TreeNode& node : tree_.nodes) {
+  for (size_t i = 0; i < tree_.nodes.size(); ++i) {
+    const TreeNode& node = tree_.nodes[i];
     if (node.v < 0 || node.motion == NodeMotion::kSpherical) continue;
     const Passive& passive = tree_.mechanism.joints[node.joint].passive[node.freedom];
     const double rate = v_[node.v];
-    const double dry = passive.coulomb * std::clamp(rate / kSlowSliding, -1.0, 1.0);
+    const double power = passive.coulomb == 0 ? 0 : SlidingPower(i);
+    const double dry = rate * FrictionDamping(passive.coulomb, power, kSlowSliding);
     spring_length_[node.v] = q_[node.q] - passive.rest;
     tau_[node.v] += passive.stiffness * spring_length_[node.v] + passive.viscous * rate + dry;
   }

@@ -54,6 +54,7 @@ class HandDynamics {
  private:
   bool Factor() noexcept;
   void SolveMotion(const Vector6d& b, const VectorXd& d, VectorXd* x) noexcept;
+  double SlidingPower(size_t node_index) const noexcept;
   void PassiveForces() noexcept;
   void RefuseIdleFreedoms() const;
 

@@ -114,6 +114,7 @@ PreparedStudy PrepareStudy(const LoadStudy& study) {
   if (study.hand) model.hand_stiffness = HandWeights(study, model.tree.length);
   model.rule = study.rule;
   model.has_passive = HasPassive(study.mechanism);
+  model.has_dry_friction = HasDryFriction(study.mechanism);
   model.has_load_friction = HasLoadFriction(study.mechanism);
   RequirePrescribed(study, &prepared);
   for (int cut : study.mechanism.preferred_cuts) {

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "vmech/dynamics/external_loads.h"
+#include "vmech/dynamics/friction_report.h"
 #include "vmech/dynamics/load_model.h"
 #include "vmech/kinematics/packet.h"
 
@@ -147,23 +148,16 @@ std::vector<JointCertainty> JudgeStudy(const LoadModel& model, const Motion& mot
 }
 
 void Summarise(const LoadModel& model, const Motion& motion, LoadStudyResult* result) {
-  size_t jammed = 0;
   for (size_t i = 0; i < result->poses.size(); ++i) {
     const PoseLoads& pose = result->poses[i];
     result->max_closure = std::max(result->max_closure, pose.closure);
     result->max_power_error = std::max(result->max_power_error, pose.power_error);
-    jammed += pose.jammed;
     if (pose.smallest_pivot < kNearDeadCentre &&
         DistanceFromDeadCentre(model.tree, model.partition, motion.q(i)) < kSingularTolerance) {
       result->singular_poses.push_back(i);
     }
   }
-  if (jammed > 0) {
-    result->warnings.push_back(fmt::format(
-        "friction locks the mechanism at {} of {} poses (no equilibrium under the drive; the loads "
-        "there are not meaningful)",
-        jammed, result->poses.size()));
-  }
+  AddFrictionWarnings(model.tree.mechanism, result);
   if (!result->singular_poses.empty()) {
     result->warnings.push_back(fmt::format(
         "{} pose(s), the first of them {}, lie at a dead centre: loads grow without bound there",

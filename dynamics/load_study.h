@@ -118,6 +118,9 @@ struct PoseLoads {
   /// Load-dependent friction has no equilibrium here: the mechanism locks itself. The joint
   /// wrenches are those of the last iteration.
   bool jammed = false;
+  int locking_joint = -1;  ///< where jammed: the joint whose friction takes the most power
+  /// The drive stands still and dry friction alone holds what it would have to hold.
+  bool held_by_friction = false;
 };
 
 struct LoadStudyResult {

@@ -1,23 +1,22 @@
 #pragma once
 
-#include "vmech/dynamics/reactions.h"
-#include "vmech/kinematics/tree_workspace.h"
 #include "vmech/mechanisms/mechanism.h"
 
 namespace vmech {
 
-/// Generalised force of a freedom's spring and friction: -k (q - rest) - c v - f sign(v), where f
-/// is the constant dry friction and what LoadFriction adds. Dry friction is zero at rest.
+/// Generalised force of a freedom's spring and damper: -k (q - rest) - c v.
 template <typename T>
-T PassiveForce(const Passive& passive, const T& dry_friction, const T& position, const T& rate);
+T SpringForce(const Passive& passive, const T& position, const T& rate) {
+  return -passive.stiffness * (position - passive.rest) - passive.viscous * rate;
+}
 
+/// Does the joint have dry friction, constant or in proportion to its load?
+bool HasDryFriction(const Joint& joint);
 /// Does any joint have springs or friction?
 bool HasPassive(const Mechanism& mechanism);
+/// Does any joint have dry friction?
+bool HasDryFriction(const Mechanism& mechanism);
 /// Does any joint's friction depend on its load?
 bool HasLoadFriction(const Mechanism& mechanism);
-
-/// Dry friction of one freedom of a joint that carries W_F, about M in axes of F.
-template <typename T>
-T DryFriction(const Joint& joint, int freedom, const Wrench<T>& W_F);
 
 }  // namespace vmech

@@ -8,8 +8,9 @@
 #include "vmech/dynamics/idle_freedoms.h"
 #include "vmech/dynamics/newton_euler.h"
 #include "vmech/dynamics/paper_joint.h"
-#include "vmech/dynamics/passive.h"
+#include "vmech/dynamics/passive_loads.h"
 #include "vmech/dynamics/power.h"
+#include "vmech/dynamics/resting_friction.h"
 #include "vmech/kinematics/forward_kinematics.h"
 #include "vmech/kinematics/jacobian.h"
 #include "vmech/kinematics/loops.h"
@@ -17,12 +18,6 @@
 
 namespace vmech {
 namespace {
-
-constexpr int kMaxFrictionIterations = 200;
-/// Small enough to stay with the equilibrium that grows out of the one without friction: beyond the
-/// cone of friction there is a second, in which the loads have turned round.
-constexpr double kFirstRelaxation = 0.25;
-constexpr double kFrictionTolerance = 1e-13;  // change of the largest joint force, relative
 
 /// The rotation vector of a unit quaternion (w, x, y, z).
 template <typename T>
@@ -46,10 +41,15 @@ const MotionSample& DriveAt(const LoadModel& model, const Motion& motion, size_t
 }
 
 template <typename T>
-void GatherMotion(const LoadModel& model, const Motion& motion, size_t pose, LoadWorkspace<T>* ws) {
+void GatherCoordinates(const Motion& motion, size_t pose, LoadWorkspace<T>* ws) {
   for (Eigen::Index i = 0; i < ws->q.size(); ++i) {
     ws->q[i] = FromLanes<T>([&](int lane) { return motion.q(pose + lane)[i]; });
   }
+}
+
+/// What the drives prescribe.
+template <typename T>
+void GatherDrives(const LoadModel& model, const Motion& motion, size_t pose, LoadWorkspace<T>* ws) {
   const CoordinatePartition& partition = model.partition;
   for (size_t k = 0; k < model.drives.size(); ++k) {
     const auto sample = [&](int lane) { return DriveAt(model, motion, pose + lane, k); };
@@ -59,21 +59,30 @@ void GatherMotion(const LoadModel& model, const Motion& motion, size_t pose, Loa
   }
 }
 
+/// All velocities from those of the drives.
 template <typename T>
-void CloseVelocities(const LoadModel& model, const Motion& motion, size_t pose,
-                     LoadWorkspace<T>* ws) {
-  if constexpr (kSinglePose<T>) {
-    if (ws->motions.size() > 0) FreeMotions(ws->tree, &ws->dependents, &ws->motions);
-    if (model.hand) HandVelocities(model, motion.hand[pose], ws);
-  }
-  if (!model.hand) {
-    for (int v : model.partition.idle) ws->v[v] = T(0);
-    ws->dependents.CompleteVelocities(ws->tree, ws->v.data());
-  }
+void CompleteVelocities(const LoadModel& model, LoadWorkspace<T>* ws) {
+  for (int v : model.partition.idle) ws->v[v] = T(0);
+  ws->dependents.CompleteVelocities(ws->tree, ws->v.data());
+}
+
+/// From the velocities of the freedoms to those of the links.
+template <typename T>
+void MoveLinks(const LoadModel& model, LoadWorkspace<T>* ws) {
   if constexpr (kSinglePose<T>) {
     if (!model.partition.idle.empty()) RemoveIdleMomentum(model, ws);
   }
   ForwardVelocities(model.tree, ws->v.data(), &ws->tree);
+}
+
+template <typename T>
+void CloseVelocities(const LoadModel& model, const Motion& motion, size_t pose,
+                     LoadWorkspace<T>* ws) {
+  if constexpr (kSinglePose<T>) {
+    if (model.hand) HandVelocities(model, motion.hand[pose], ws);
+  }
+  if (!model.hand) CompleteVelocities(model, ws);
+  MoveLinks(model, ws);
 }
 
 template <typename T>
@@ -95,18 +104,50 @@ void CloseAccelerations(const LoadModel& model, const Motion& motion, size_t pos
   }
 }
 
-/// Coordinates and rates of every joint, cut ones included.
+/// Rates of every joint, cut ones included.
 template <typename T>
-void JointMotions(const LoadModel& model, const Motion& motion, size_t pose, LoadWorkspace<T>* ws) {
+void JointRates(const LoadModel& model, LoadWorkspace<T>* ws) {
+  for (const TreeNode& node : model.tree.nodes) {
+    Vector3<T>* rate = node.v < 0 ? nullptr : &ws->loads[node.joint].rate;
+    for (int k = 0; k < VelocitiesOf(node.motion); ++k) {
+      (*rate)[node.freedom + k] = ws->v[node.v + k];
+    }
+  }
+  for (size_t l = 0; l < model.tree.loops.size(); ++l) {
+    ws->loads[model.tree.loops[l].joint].rate =
+        CutJointRates(model.tree, ws->tree, static_cast<int>(l));
+  }
+}
+
+/// How the mechanism would move if the drives that stand still began to move one by one: the
+/// motions that friction at rest can hold. Uses the velocities as scratch.
+void FindCreep(const LoadModel& model, const Motion& motion, size_t pose,
+               LoadWorkspace<double>* ws) {
+  const std::vector<int> standing = StandingDrives(model, motion, pose);
+  ws->creep.resize(model.tree.nv, static_cast<Eigen::Index>(standing.size()));
+  ws->creep_rates.clear();
+  for (size_t k = 0; k < standing.size(); ++k) {
+    ws->v.setZero();
+    ws->v[standing[k]] = CreepSpeed(model, standing[k]);
+    CompleteVelocities(model, ws);
+    MoveLinks(model, ws);
+    JointRates(model, ws);
+    ws->creep.col(static_cast<Eigen::Index>(k)) = ws->v;
+    for (const JointLoad<double>& joint : ws->loads) ws->creep_rates.push_back(joint.rate);
+  }
+}
+
+/// Coordinates of every joint, cut ones included.
+template <typename T>
+void JointPositions(const LoadModel& model, const Motion& motion, size_t pose,
+                    LoadWorkspace<T>* ws) {
   for (const TreeNode& node : model.tree.nodes) {
     if (node.v < 0) continue;
     JointLoad<T>& joint = ws->loads[node.joint];
     if (node.motion == NodeMotion::kSpherical) {
       joint.position = RotationVector<T>(ws->q.data() + node.q);
-      for (int k = 0; k < 3; ++k) joint.rate[k] = ws->v[node.v + k];
     } else {
       joint.position[node.freedom] = ws->q[node.q];
-      joint.rate[node.freedom] = ws->v[node.v];
     }
   }
   const size_t loops = model.tree.loops.size();
@@ -116,33 +157,6 @@ void JointMotions(const LoadModel& model, const Motion& motion, size_t pose, Loa
       joint.position[k] = FromLanes<T>(
           [&](int lane) { return motion.cut_positions[(pose + lane) * loops + l][k]; });
     }
-    joint.rate = CutJointRates(model.tree, ws->tree, static_cast<int>(l));
-  }
-}
-
-/// Springs and friction along every freedom, under the joint wrenches of ws->loads.
-template <typename T>
-void PassiveForces(const LoadModel& model, LoadWorkspace<T>* ws) {
-  auto force = [&](int joint_index, int freedom) {
-    const Joint& joint = model.tree.mechanism.joints[joint_index];
-    const JointLoad<T>& load = ws->loads[joint_index];
-    const T dry = DryFriction(joint, freedom, load.W_F);
-    return PassiveForce(joint.passive[freedom], dry, load.position[freedom], load.rate[freedom]);
-  };
-  for (const TreeNode& node : model.tree.nodes) {
-    if (node.v < 0) continue;
-    const int count = node.motion == NodeMotion::kSpherical ? 3 : 1;
-    for (int k = 0; k < count; ++k) ws->passive[node.v + k] = force(node.joint, node.freedom + k);
-  }
-  for (size_t l = 0; l < model.tree.loops.size(); ++l) {
-    const CutJointFreedoms<T> freedoms = FreedomsOfCutJoint(model.tree.loops[l], ws->tree.loops[l]);
-    Vector6<T> W_F = Vector6<T>::Zero();
-    for (int k = 0; k < freedoms.count; ++k) {
-      // A twist of unit rate against which the force does work; exact for the screw as well.
-      const Vector6<T>& S = freedoms.twist_F[k];
-      W_F += S * (force(model.tree.loops[l].joint, k) / S.squaredNorm());
-    }
-    ws->cut_passive[l] = {W_F.template head<3>(), W_F.template tail<3>()};
   }
 }
 
@@ -193,15 +207,26 @@ void SolveReactions(const LoadModel& model, LoadWorkspace<T>* ws) {
   }
 }
 
-/// One pass from the friction under the joint wrenches of ws->loads to new joint wrenches there.
+/// What the links' motion and everything but multipliers and drives ask along each freedom.
 template <typename T>
-void EquilibriumPass(const LoadModel& model, LoadWorkspace<T>* ws) {
-  if (model.has_passive) PassiveForces(model, ws);
+void LoadTree(const LoadModel& model, LoadWorkspace<T>* ws) {
   GatherApplied(model, ws);
   RecursiveNewtonEuler<T>(model.tree, model.tree.mechanism.gravity_W, ws->applied.data(),
                           &ws->tree);
   GeneralisedForces(model.tree, ws->tree, ws->tau.data());
+}
+
+/// One pass from the friction under the joint wrenches of ws->loads to new joint wrenches there.
+template <typename T>
+void EquilibriumPass(const LoadModel& model, LoadWorkspace<T>* ws) {
+  if (model.has_passive) PassiveForces(model, ws);
+  LoadTree(model, ws);
   if constexpr (kSinglePose<T>) {
+    if (!ws->resting.empty()) {
+      HoldByFriction(model, ws);
+      SpreadPassive(model, ws);
+      LoadTree(model, ws);
+    }
     if (!model.partition.idle.empty()) SettleIdleFreedoms(model, ws);
     if (model.hand && model.rule != ReactionRule::kPaperJoint) ApplyHandWrench(model, ws);
     if (model.rule == ReactionRule::kPaperJoint) SolvePaperJoint(model, ws);
@@ -212,41 +237,16 @@ void EquilibriumPass(const LoadModel& model, LoadWorkspace<T>* ws) {
   }
 }
 
-/// Reactions and the friction that depends on them: x = G(x) for the joint forces x, by fixed-point
-/// iteration with Aitken's relaxation, x += beta r, r = G(x) - x, which converges where the plain
-/// iteration swings or creeps. Without a solution the mechanism locks itself.
-bool IterateFriction(const LoadModel& model, LoadWorkspace<double>* ws) {
-  double beta = kFirstRelaxation;
-  for (size_t j = 0; j < ws->loads.size(); ++j) ws->friction_load[j] = ws->loads[j].W_F.force;
-  for (int i = 0; i < kMaxFrictionIterations; ++i) {
-    EquilibriumPass(model, ws);
-    double change = 0, largest = 0, along = 0, across = 0;
-    for (size_t j = 0; j < ws->loads.size(); ++j) {
-      const Vector3d& force = ws->loads[j].W_F.force;
-      const Vector3d r = force - ws->friction_load[j];
-      const Vector3d dr = r - ws->friction_residual[j];
-      change = std::max(change, r.cwiseAbs().maxCoeff());
-      largest = std::max(largest, force.cwiseAbs().maxCoeff());
-      along += ws->friction_residual[j].dot(dr);
-      across += dr.squaredNorm();
-      ws->friction_residual[j] = r;
-    }
-    if (change <= kFrictionTolerance * largest) return true;
-    if (i > 0 && across > 0) beta *= -along / across;
-    for (size_t j = 0; j < ws->loads.size(); ++j) {
-      ws->friction_load[j] += beta * ws->friction_residual[j];
-      ws->loads[j].W_F.force = ws->friction_load[j];
-    }
-  }
-  return false;
-}
-
 template <typename T>
 void FindEquilibrium(const LoadModel& model, LoadWorkspace<T>* ws) {
   for (JointLoad<T>& load : ws->loads) load.W_F = Wrench<T>{};
   EquilibriumPass(model, ws);
   if constexpr (kSinglePose<T>) {
-    ws->jammed = model.has_load_friction && !IterateFriction(model, ws);
+    if (!model.has_load_friction) return;
+    const bool settled =
+        ws->friction.Run(model.tree.length, &ws->loads, [&] { EquilibriumPass(model, ws); });
+    ws->locking_joint = LockingJoint(model, *ws, settled);
+    ws->jammed = !settled || ws->locking_joint >= 0;
   }
 }
 
@@ -286,6 +286,8 @@ LoadWorkspace<T>::LoadWorkspace(const LoadModel& model)
       joints(model.tree.mechanism.joints.size()),
       applied(model.tree.nodes.size()),
       cut_passive(model.tree.loops.size()),
+      sliding(joints.size(), Vector3<T>::Zero()),
+      along(joints.size(), Vector3<T>::Zero()),
       external_W(model.external.size()),
       q(VectorX::Zero(model.tree.nq)),
       v(VectorX::Zero(model.tree.nv)),
@@ -294,8 +296,6 @@ LoadWorkspace<T>::LoadWorkspace(const LoadModel& model)
       passive(VectorX::Zero(model.tree.nv)),
       open(VectorX::Zero(model.tree.nv)),
       mu(VectorX::Zero(model.tree.rows)),
-      friction_load(joints.size(), Vector3d::Zero()),
-      friction_residual(joints.size(), Vector3d::Zero()),
       loads(joints.size(), {{}, Vector3<T>::Zero(), Vector3<T>::Zero()}),
       drive_forces(model.drives.size(), T(0)) {
   const CoordinatePartition& p = model.partition;
@@ -312,14 +312,24 @@ bool RunsInPackets(const LoadModel& model) {
 template <typename T>
 bool EvaluatePoseLoads(const LoadModel& model, const Motion& motion, size_t pose,
                        LoadWorkspace<T>* ws) {
-  GatherMotion(model, motion, pose, ws);
+  if (!kSinglePose<T> && model.has_dry_friction && AnyStands(model, motion, pose, kLanesOf<T>)) {
+    return false;
+  }
+  GatherCoordinates(motion, pose, ws);
   EvaluatePose(model.tree, ws->q.data(), &ws->tree);
   ws->dependents.Factor(ws->tree);
   if (!AllLanes(ws->dependents.smallest_pivot() > T(0))) return false;
   ws->closure = LargestLoopError(model.tree, ws->tree);
+  if constexpr (kSinglePose<T>) {
+    if (ws->motions.size() > 0) FreeMotions(ws->tree, &ws->dependents, &ws->motions);
+    if (model.has_dry_friction) FindCreep(model, motion, pose, ws);
+  }
+  GatherDrives(model, motion, pose, ws);
   CloseVelocities(model, motion, pose, ws);
+  JointRates(model, ws);
+  JointPositions(model, motion, pose, ws);
+  if (model.has_dry_friction) FindContacts(model, motion, ws);
   CloseAccelerations(model, motion, pose, ws);
-  JointMotions(model, motion, pose, ws);
   EvaluateExternalLoads(model, motion, pose, ws);
   JointFrames(model.tree, ws->tree, &ws->joints);
   ws->reactions.Factor(ws->tree, ws->joints);
@@ -354,6 +364,8 @@ void StorePoseLoads(const LoadModel& model, const Motion& motion, size_t pose,
     out.smallest_pivot = Lane(ws.dependents.smallest_pivot(), lane);
     out.closure = Lane(ws.closure, lane);
     out.jammed = ws.jammed;
+    out.locking_joint = ws.locking_joint;
+    out.held_by_friction = ws.held_by_friction;
   }
   for (size_t link = 0; link < poses[0].links.size(); ++link) {
     const int index = model.tree.NodeOfLink(static_cast<int>(link));

@@ -3,6 +3,8 @@
 #include <optional>
 #include <vector>
 
+#include "vmech/dynamics/contact_friction.h"
+#include "vmech/dynamics/friction_iteration.h"
 #include "vmech/dynamics/load_study.h"
 #include "vmech/dynamics/reactions.h"
 #include "vmech/kinematics/closure.h"
@@ -21,7 +23,8 @@ struct LoadModel {
   Vector6d hand_stiffness = Vector6d::Ones();  ///< K of the hand, diagonal
   ReactionRule rule = ReactionRule::kStiffness;
   bool has_passive = false;
-  bool has_load_friction = false;
+  bool has_dry_friction = false;   ///< constant, or in proportion to loads
+  bool has_load_friction = false;  ///< in proportion to loads
 };
 
 /// A study's motion, pose by pose.
@@ -31,12 +34,23 @@ struct Motion {
   std::vector<MotionSample> drives;     ///< [poses * drives]
   std::vector<HandSample> hand;         ///< [poses] if a hand drives
   std::vector<Vector3d> cut_positions;  ///< [poses * loops] of the cut joints, unwrapped
+  /// The largest speed of any drive or of the hand [rad/s], lengths divided by the characteristic
+  /// length: what rounding of velocities is measured by.
+  double speed = 0;
 
   size_t size() const { return times.size(); }
   Eigen::Map<const VectorXd> q(size_t pose) const {
     const size_t nq = coordinates.size() / times.size();
     return {coordinates.data() + pose * nq, static_cast<Eigen::Index>(nq)};
   }
+};
+
+/// A contact at rest that would slide if the drives that stand still crept.
+struct RestingContact {
+  int joint = -1;
+  Eigen::Matrix3Xd creep;    ///< [3, standing drives] rates of the joint; zero but in this contact
+  Eigen::Matrix3Xd limited;  ///< the same, each rate times the limit of its friction
+  double weight = 0;
 };
 
 /// What a joint does and carries, in the axes of the anchor on its first link.
@@ -61,6 +75,8 @@ struct LoadWorkspace {
   std::vector<JointState<T>> joints;
   std::vector<Wrench<T>> applied;      ///< per node about Bo, from outside
   std::vector<Wrench<T>> cut_passive;  ///< per loop: springs and friction of the cut joint, in F
+  std::vector<Vector3<T>> sliding;     ///< per joint: its rates, zero where it rests
+  std::vector<Vector3<T>> along;       ///< per joint: springs and friction along its freedoms
   std::vector<Wrench<T>> external_W;   ///< the external loads about their points, world axes
   VectorX q, v, vdot;
   VectorX tau;       ///< needed along each freedom
@@ -68,7 +84,12 @@ struct LoadWorkspace {
   VectorX open;      ///< what is left for drives and multipliers
   VectorX mu;        ///< multipliers of the cut joints
   MatrixXd motions;  ///< [nv, independent]: free motions, where the hand or idle freedoms need them
-  std::vector<Vector3d> friction_load, friction_residual;  ///< per joint, of the friction iteration
+  MatrixXd creep;    ///< [nv, standing drives]: the motion as each of them begins to move
+  std::vector<Vector3d> creep_rates;  ///< [standing drives * joints]
+  std::vector<RestingContact> resting;
+  VectorXd holding;  ///< [standing drives] y of resting_friction.h
+  int holding_passes = 0;
+  FrictionIteration friction;
 
   // What comes out, beside `tree`.
   std::vector<JointLoad<T>> loads;  ///< per joint
@@ -76,6 +97,8 @@ struct LoadWorkspace {
   Wrench<T> hand;  ///< w_d at Go, world axes
   T power, power_error, closure;
   bool jammed = false;
+  int locking_joint = -1;
+  bool held_by_friction = false;
 };
 
 /// Can a packet of poses be evaluated at once? Not where the hand, idle freedoms or friction under
@@ -85,7 +108,8 @@ bool RunsInPackets(const LoadModel& model);
 /// Velocities, accelerations, drive forces and the wrench of every joint at the closed poses
 /// `pose`, `pose` + 1, ... (as many as T has lanes), from scratch: the same input gives the same
 /// bits. Returns false if one of them is a dead centre, where the drive does not determine the
-/// motion; what ws holds is then not to be used.
+/// motion, or if one of a packet is a pose at rest, whose friction is found pose by pose; what ws
+/// holds is then not to be used.
 template <typename T>
 [[nodiscard]] bool EvaluatePoseLoads(const LoadModel& model, const Motion& motion, size_t pose,
                                      LoadWorkspace<T>* ws);

@@ -8,6 +8,7 @@
 #include "vmech/dynamics/hand_wrench.h"
 #include "vmech/dynamics/idle_freedoms.h"
 #include "vmech/dynamics/load_model.h"
+#include "vmech/dynamics/resting_friction.h"
 #include "vmech/kinematics/forward_kinematics.h"
 #include "vmech/kinematics/inverse_kinematics.h"
 #include "vmech/kinematics/loops.h"
@@ -114,7 +115,10 @@ class Tracker {
     RecordPose(q_);
   }
 
-  Motion TakeMotion() { return std::move(motion_); }
+  Motion TakeMotion() {
+    motion_.speed = LargestSpeed();
+    return std::move(motion_);
+  }
 
  private:
   static constexpr int kApproachSteps = 16;
@@ -307,6 +311,22 @@ class Tracker {
       default:
         return false;
     }
+  }
+
+  double LargestSpeed() const {
+    double speed = 0;
+    const size_t drives = study_.drives.size();
+    for (size_t k = 0; k < drives; ++k) {
+      const double unit = CreepSpeed(model_, model_.partition.driven[k]);
+      for (size_t i = k; i < motion_.drives.size(); i += drives) {
+        speed = std::max(speed, std::abs(motion_.drives[i].velocity) / unit);
+      }
+    }
+    for (const HandSample& hand : motion_.hand) {
+      speed =
+          std::max({speed, hand.V_WH.head<3>().norm() / tree_.length, hand.V_WH.tail<3>().norm()});
+    }
+    return speed;
   }
 
   [[noreturn]] void Lost(double time, size_t pose) const {

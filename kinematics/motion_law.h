@@ -15,7 +15,10 @@ struct MotionSample {
 
 /// How a driven coordinate moves in time: at constant acceleration, or through a table by the cubic
 /// spline with not-a-knot ends (twice continuously differentiable; a table of one row stands still,
-/// of two moves at constant speed, of three on a parabola). SI units and radians.
+/// of two moves at constant speed, of three on a parabola). Where the table dwells (FindDwells) the
+/// coordinate stands exactly still from the first of the equal rows to the last, these included;
+/// the splines before and behind end there with velocity zero, so that only the acceleration jumps.
+/// SI units and radians.
 class MotionLaw {
  public:
   /// position = start + speed t + acceleration t^2 / 2.
@@ -27,7 +30,15 @@ class MotionLaw {
   MotionSample At(double t) const;
 
  private:
+  friend class HandLaw;
+  static MotionLaw TableWithDwells(const std::vector<double>& times,
+                                   const std::vector<double>& values,
+                                   const std::vector<bool>& dwells);
+  void AddSpline(const std::vector<double>& times, const std::vector<double>& values,
+                 bool rests_before, bool rests_after);
+
   struct Piece {
+    double from;  ///< the first time that it holds for; just behind t0 where a dwell ends
     double t0;
     double c[4];  ///< position = sum c_k (t - t0)^k
   };
@@ -44,6 +55,7 @@ struct HandSample {
 /// How the hand moves: a cubic spline through positions, and one through the rotation vectors
 /// between consecutive orientations, accumulated in the frame of the first (smooth, and exact at
 /// the rows; meant for tables whose total turn stays below pi of the first row's orientation).
+/// Position and orientation dwell each for themselves, as MotionLaw does.
 class HandLaw {
  public:
   /// @throws std::invalid_argument as MotionLaw::Table, or for an orientation that is pi or more

@@ -23,6 +23,13 @@ bool Rotates(JointType type) {
   return std::find(rotates.begin(), rotates.end(), true) != rotates.end();
 }
 
+FrictionKeys FrictionKeysOf(JointType type) {
+  const bool pins = type == JointType::kRevolute || type == JointType::kUniversal;
+  const bool slides = type == JointType::kPrismatic;
+  const bool guided = slides || type == JointType::kCylindrical || type == JointType::kScrew;
+  return {Rotates(type), pins, pins || guided, slides};
+}
+
 std::vector<ElementaryFreedom> ElementaryFreedoms(JointType type) {
   constexpr ElementaryFreedom kTurnX{true, 0}, kTurnY{true, 1}, kTurnZ{true, 2};
   constexpr ElementaryFreedom kShiftX{false, 0}, kShiftY{false, 1}, kShiftZ{false, 2};

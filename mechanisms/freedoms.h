@@ -18,6 +18,12 @@ const Freedoms& FreedomsOfType(JointType type);
 /// Is any freedom a rotation?
 bool Rotates(JointType type);
 
+/// Which lengths of LoadFriction a joint type has a use for.
+struct FrictionKeys {
+  bool radius, thrust_radius, length, width;
+};
+FrictionKeys FrictionKeysOf(JointType type);
+
 /// A turn about, or a shift along, an axis of the joint's frame: 0, 1, 2 for x, y, z.
 struct ElementaryFreedom {
   bool rotates;

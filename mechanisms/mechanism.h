@@ -59,7 +59,8 @@ int FreedomsOf(JointType type);
 int CoordinatesOf(JointType type);
 
 /// A linear spring and the dry and viscous friction along one freedom of a joint.
-/// Generalised force on the freedom: -stiffness (q - rest) - viscous q' - coulomb sign(q').
+/// Generalised force on the freedom: -stiffness (q - rest) - viscous q', and dry friction, which
+/// opposes the sliding of all freedoms of a contact together.
 struct Passive {
   double stiffness = 0;  ///< [N/m] or [N m/rad]
   double rest = 0;       ///< coordinate at which the spring is slack [m] or [rad]
@@ -67,12 +68,16 @@ struct Passive {
   double coulomb = 0;    ///< constant part of dry friction [N] or [N m]
 };
 
-/// Dry friction in proportion to the joint's load. Rotations: moment = coefficient * radius *
-/// radial force; translations: force = coefficient * transverse force. The load is that of the
-/// joint itself, so that the reactions and the friction are found together.
+/// Dry friction in proportion to the joint's load (dynamics/contact_friction.h has the formulas).
+/// The load is that of the joint itself, so that the reactions and the friction are found together.
+/// A length of zero is one that is not given; the load that it would turn into friction is left
+/// out.
 struct LoadFriction {
-  double coefficient = 0;  ///< [-]
-  double radius = 0;       ///< of the sliding surface of a rotation [m]
+  double coefficient = 0;    ///< [-]
+  double radius = 0;         ///< of the sliding surface of a rotation, mean radius of a thread [m]
+  double thrust_radius = 0;  ///< mean radius of the collars that take the thrust along a pin [m]
+  double length = 0;         ///< between the two supports that hold a tilting couple [m]
+  double width = 0;          ///< between the two faces that keep a slide from turning [m]
 };
 
 /// A joint is the coincidence of an anchor on its first link with one on its second. At

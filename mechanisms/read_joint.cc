@@ -127,16 +127,32 @@ void ReadPassive(const Node& node, const Units& units, Joint* joint) {
   }
 }
 
+/// A length on which friction depends, or the reason why the type has none.
+void ReadFrictionLength(const Node& node, const Units& units, bool used, std::string_view why,
+                        double* length) {
+  if (!node) return;
+  *length = units.length * node.Positive();
+  if (!used) node.KeyError(fmt::format("not used: {}", why));
+}
+
 void ReadLoadFriction(const Node& node, const Units& units, Joint* joint) {
-  if (!node || !node.CheckKeys({"coefficient"}, {"radius"})) return;
-  joint->load_friction.coefficient = node["coefficient"].NonNegative();
-  const Node radius = node["radius"];
-  if (radius) joint->load_friction.radius = units.length * radius.Positive();
-  if (Rotates(joint->type) && !radius) {
-    node.KeyError("the key 'radius' is missing; friction of a rotation acts at a radius");
-  } else if (!Rotates(joint->type) && radius) {
-    radius.KeyError("not used: this joint does not rotate");
+  if (!node || !node.CheckKeys({"coefficient"}, {"radius", "thrust_radius", "length", "width"})) {
+    return;
   }
+  const FrictionKeys used = FrictionKeysOf(joint->type);
+  LoadFriction& friction = joint->load_friction;
+  friction.coefficient = node["coefficient"].NonNegative();
+  if (used.radius && !node["radius"]) {
+    node.KeyError("the key 'radius' is missing; friction of a rotation acts at a radius");
+  }
+  ReadFrictionLength(node["radius"], units, used.radius, "this joint does not rotate",
+                     &friction.radius);
+  ReadFrictionLength(node["thrust_radius"], units, used.thrust_radius,
+                     "this joint has no collars that take a thrust", &friction.thrust_radius);
+  ReadFrictionLength(node["length"], units, used.length,
+                     "this joint has no two supports that hold a tilting couple", &friction.length);
+  ReadFrictionLength(node["width"], units, used.width,
+                     "only a slide has faces that keep it from turning", &friction.width);
 }
 
 void ReadStiffness(const Node& node, const Units& units, Joint* joint) {

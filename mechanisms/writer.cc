@@ -163,10 +163,16 @@ void AddPassive(const Joint& joint, const Units& units, FlowMap* map) {
 }
 
 void AddLoadFriction(const LoadFriction& friction, const Units& units, FlowMap* map) {
+  const std::pair<const char*, double> lengths[] = {{"radius", friction.radius},
+                                                    {"thrust_radius", friction.thrust_radius},
+                                                    {"length", friction.length},
+                                                    {"width", friction.width}};
   if (friction.coefficient == 0 && friction.radius == 0) return;
   FlowMap entry;
   entry.Add("coefficient", Decimal(friction.coefficient, 1));
-  if (friction.radius != 0) entry.Add("radius", Decimal(friction.radius, units.length));
+  for (const auto& [key, length] : lengths) {
+    if (length != 0) entry.Add(key, Decimal(length, units.length));
+  }
   map->Add("friction", entry.Text());
 }
 

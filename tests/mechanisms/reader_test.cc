@@ -159,6 +159,21 @@ TEST(Reader, ConvertsEachFreedomByItsKind) {
   EXPECT_NEAR(planar.load_friction.radius, 0.004, kRounding);
 }
 
+TEST(Reader, TakesTheLengthsOfFrictionThatATypeHas) {
+  const LoadFriction pin =
+      JointOf(
+          "type: revolute, friction: {coefficient: 0.1, radius: 4, thrust_radius: 6, length: 8}",
+          "length: mm")
+          .load_friction;
+  EXPECT_NEAR(pin.thrust_radius, 0.006, kRounding);
+  EXPECT_NEAR(pin.length, 0.008, kRounding);
+  const LoadFriction slide =
+      JointOf("type: prismatic, friction: {coefficient: 0.1, length: 80, width: 20}", "length: mm")
+          .load_friction;
+  EXPECT_NEAR(slide.length, 0.08, kRounding);
+  EXPECT_NEAR(slide.width, 0.02, kRounding);
+}
+
 TEST(Reader, MakesTheXAxisSquareToTheZAxis) {
   const Mechanism mechanism = Parse("x-note: {z: 1}", "type: weld");
   EXPECT_TRUE(mechanism.anchor(mechanism.joints[0].first).X_LA.R.isIdentity(0));

@@ -33,7 +33,9 @@ inline std::vector<double> Figures(const Mechanism& mechanism) {
     for (const Passive& p : joint.passive) {
       add(std::vector{p.stiffness, p.rest, p.viscous, p.coulomb});
     }
-    add(std::vector{joint.pitch, joint.load_friction.coefficient, joint.load_friction.radius});
+    const LoadFriction& friction = joint.load_friction;
+    add(std::vector{joint.pitch, friction.coefficient, friction.radius, friction.thrust_radius,
+                    friction.length, friction.width});
     if (joint.stiffness) add(*joint.stiffness);
   }
   for (const Grasp& grasp : mechanism.grasps) add_pose(grasp.X_LG);

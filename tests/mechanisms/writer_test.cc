@@ -74,7 +74,11 @@ Joint RandomJoint(const std::string& name, JointType type, AnchorId first, Ancho
     }
   }
   if (type != JointType::kWeld) joint.load_friction.coefficient = random->Between(0, 1);
-  if (Rotates(type)) joint.load_friction.radius = random->Between(0.01, 0.02);
+  const FrictionKeys used = FrictionKeysOf(type);
+  if (used.radius) joint.load_friction.radius = random->Between(0.01, 0.02);
+  if (used.thrust_radius) joint.load_friction.thrust_radius = random->Between(0.02, 0.03);
+  if (used.length) joint.load_friction.length = random->Between(0.1, 0.2);
+  if (used.width) joint.load_friction.width = random->Between(0.03, 0.05);
   joint.stiffness = Vector6d::Constant(random->Between(1e6, 1e9));
   return joint;
 }
