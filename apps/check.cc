@@ -146,14 +146,14 @@ Json DhJson(const Mechanism& m, const DhTable& table) {
 
 }  // namespace
 
-MechanismCheck CheckMechanism(Mechanism mechanism) {
+MechanismCheck CheckMechanism(const Mechanism& mechanism) {
   MechanismCheck check;
-  check.tree = BuildKinematicTree(std::move(mechanism));
+  check.assembled = AssembleMechanism(mechanism);
+  check.tree = BuildKinematicTree(check.assembled.mechanism);
   check.dh = DeduceDhTable(check.tree.mechanism, check.tree.spanning);
-  VectorXd q = StartCoordinates(check.tree);
-  check.assembly = Assemble(check.tree, {}, &q);
+  const VectorXd q = StartCoordinates(check.tree);
   check.mobility.q_general = q;
-  if (!check.assembly.closed) return check;
+  if (!check.closed()) return check;
   check.mobility = AnalyseMobility(check.tree, q);
   check.mobility.q_general = q;
   return check;
@@ -163,12 +163,15 @@ std::string TextReport(const MechanismCheck& check) {
   const Mechanism& m = check.tree.mechanism;
   std::string text = fmt::format("{}\n\n", m.name) + LinkLines(m) + JointLines(check);
   text += LoopLines(check.tree);
-  if (!check.assembly.closed) return text + "\nNOT ASSEMBLED: " + check.assembly.message + "\n";
+  if (!check.closed()) return text + "\nNOT ASSEMBLED: " + check.assembled.summary.message + "\n";
   text += MobilityWords(check);
   if (!check.tree.loops.empty()) {
     text += fmt::format(
         "closure     {:.2g} of the length {:.4g} m, assembled from {:.2g} as the file has it\n",
-        check.assembly.error, check.tree.length, check.assembly.start_error);
+        check.assembled.summary.error, check.tree.length, check.assembled.summary.start_error);
+  }
+  for (const std::string& note : check.assembled.Notes()) {
+    text += fmt::format("note        {}\n", note);
   }
   for (const Grasp& grasp : m.grasps) {
     text += fmt::format("grasp       {} on {}, {}\n", grasp.name, m.links[grasp.link].name,
@@ -188,7 +191,7 @@ std::string JsonReport(const MechanismCheck& check) {
     Json entry{{"name", joint.name},
                {"type", NameOf(joint.type)},
                {"cut", check.tree.placements[j].tree_node < 0}};
-    if (check.assembly.closed) entry["moves"] = static_cast<bool>(check.mobility.joint_moves[j]);
+    if (check.closed()) entry["moves"] = static_cast<bool>(check.mobility.joint_moves[j]);
     json["joints"].push_back(entry);
   }
   json["loops"] = Json::array();
@@ -197,18 +200,21 @@ std::string JsonReport(const MechanismCheck& check) {
                              {"equations", loop.rows},
                              {"through", LoopJoints(check.tree, loop)}});
   }
-  json["assembled"] = check.assembly.closed;
-  json["closure_error"] = check.assembly.error;
-  json["start_error"] = check.assembly.start_error;
+  json["assembled"] = check.closed();
+  json["closure_error"] = check.assembled.summary.error;
+  json["start_error"] = check.assembled.summary.start_error;
+  json["rounding"] = check.assembled.correction;
+  json["tolerance"] = m.tolerance;
   json["characteristic_length"] = check.tree.length;
-  if (!check.assembly.closed) {
-    json["message"] = check.assembly.message;
+  if (!check.closed()) {
+    json["message"] = check.assembled.summary.message;
   } else {
     json["mobility"] = check.mobility.mobility;
     json["gruebler"] = check.mobility.gruebler;
     json["rank"] = check.mobility.rank;
     json["redundant_equations"] = check.mobility.redundant;
     json["singular_start"] = check.mobility.singular_here;
+    json["notes"] = check.assembled.Notes();
   }
   json["denavit_hartenberg"] = DhJson(m, check.dh);
   return json.dump(2) + "\n";

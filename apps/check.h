@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "vmech/kinematics/assembly.h"
+#include "vmech/kinematics/assembled_mechanism.h"
 #include "vmech/kinematics/kinematic_tree.h"
 #include "vmech/kinematics/mobility.h"
 #include "vmech/mechanisms/denavit_hartenberg.h"
@@ -11,13 +11,15 @@ namespace vmech {
 
 /// What vmech makes of a mechanism file.
 struct MechanismCheck {
-  KinematicTree tree;
-  AssemblySummary assembly;
+  KinematicTree tree;  ///< of the assembled mechanism, if it closes
+  AssembledMechanism assembled;
   Mobility mobility;  ///< only if the loops close
   DhTable dh;
+
+  bool closed() const { return assembled.summary.closed; }
 };
 
-MechanismCheck CheckMechanism(Mechanism mechanism);
+MechanismCheck CheckMechanism(const Mechanism& mechanism);
 
 /// A page for a terminal: links, joints, loops and cuts, mobility, redundancy, closure, and the
 /// Denavit-Hartenberg parameters.

@@ -37,9 +37,11 @@ Mechanism ReadOrRedirect(const std::filesystem::path& path) {
 }  // namespace
 
 int RunCheck(const CheckArguments& arguments) {
-  const MechanismCheck check = CheckMechanism(ReadOrRedirect(arguments.mechanism));
+  Mechanism mechanism = ReadOrRedirect(arguments.mechanism);
+  if (arguments.tolerance) mechanism.tolerance = *arguments.tolerance;
+  const MechanismCheck check = CheckMechanism(mechanism);
   fmt::print("{}", arguments.json ? JsonReport(check) : TextReport(check));
-  return check.assembly.closed ? kSuccess : kNoSolution;
+  return check.closed() ? kSuccess : kNoSolution;
 }
 
 }  // namespace vmech

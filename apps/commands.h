@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,13 +21,15 @@ enum ExitCode {
 
 struct CheckArguments {
   std::filesystem::path mechanism;
+  std::optional<double> tolerance;  ///< instead of the mechanism's own
   bool json = false;
 };
 int RunCheck(const CheckArguments& arguments);
 
 struct LoadsArguments {
   std::filesystem::path study;
-  std::filesystem::path out;  ///< empty: "<study>-loads" in the current folder
+  std::filesystem::path out;        ///< empty: "<study>-loads" in the current folder
+  std::optional<double> tolerance;  ///< instead of the mechanism's own
   bool quiet = false;
   int threads = 0;  ///< 0: all processors
 };
@@ -49,6 +52,7 @@ int RunIk(const IkArguments& arguments);
 
 struct ExportArguments {
   std::filesystem::path mechanism, out;
+  std::optional<double> tolerance;  ///< instead of the mechanism's own
   bool si = false;         ///< .yaml: metres and radians instead of millimetres and degrees
   bool dh_frames = false;  ///< links drawn in their Denavit-Hartenberg frames
 };
@@ -68,6 +72,7 @@ struct HapticArguments {
   bool gripper = false;              ///< hold while the gripper is closed
   std::filesystem::path record;      ///< empty: no recording
   bool free_running = false;         ///< as fast as it computes
+  std::optional<double> tolerance;   ///< instead of the mechanism's own
   bool post_mortem = true;           ///< write the last ticks after a fault
   bool quiet = false;
 };

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include "vmech/apps/assembled.h"
 #include "vmech/apps/commands.h"
 #include "vmech/apps/output_folder.h"
+#include "vmech/kinematics/assembled_mechanism.h"
 #include "vmech/mechanisms/denavit_hartenberg.h"
 #include "vmech/mechanisms/document.h"
 #include "vmech/mechanisms/exchange/mjcf.h"
@@ -20,8 +20,9 @@ ExportedText Exported(const Mechanism& mechanism, const ExportArguments& argumen
         arguments.si ? FileUnits::kMetresRadians : FileUnits::kMillimetresDegrees;
     return {WriteMechanism(mechanism, {units, ""}), {}};
   }
-  if (ending == ".sdf") return WriteSdf(Assembled(mechanism));
-  if (ending == ".xml" || ending == ".mjcf") return WriteMjcf(Assembled(mechanism));
+  if (ending == ".sdf") return WriteSdf(RequireAssembled(mechanism).mechanism);
+  if (ending == ".xml" || ending == ".mjcf")
+    return WriteMjcf(RequireAssembled(mechanism).mechanism);
   throw FileErrors(arguments.out.string(),
                    "what is written goes by the ending: .sdf (SDFormat), .xml or .mjcf (MuJoCo), "
                    ".yaml (vmech)");
@@ -31,6 +32,7 @@ ExportedText Exported(const Mechanism& mechanism, const ExportArguments& argumen
 
 int RunExport(const ExportArguments& arguments) {
   Mechanism mechanism = ReadMechanism(arguments.mechanism);
+  if (arguments.tolerance) mechanism.tolerance = *arguments.tolerance;
   if (arguments.dh_frames) {
     mechanism = DrawnInLinkFrames(mechanism, DeduceDhTable(mechanism, FindSpanningTree(mechanism)));
   }

@@ -14,8 +14,9 @@
 #include "vmech/hw_interface/replay_master.h"
 #include "vmech/hw_interface/runner.h"
 #include "vmech/hw_interface/stability.h"
-#include "vmech/kinematics/assembly.h"
+#include "vmech/kinematics/assembled_mechanism.h"
 #include "vmech/kinematics/forward_kinematics.h"
+#include "vmech/mechanisms/document.h"
 
 namespace vmech {
 namespace {
@@ -68,12 +69,21 @@ class StatusLine {
   std::thread thread_;
 };
 
-/// The loops closed at the file's start values.
-VectorXd StartPose(const KinematicTree& tree, const std::filesystem::path& file) {
-  VectorXd q = StartCoordinates(tree);
-  const AssemblySummary summary = Assemble(tree, {}, &q);
-  if (summary.closed) return q;
-  throw std::runtime_error(fmt::format("{}: {}", file.string(), summary.message));
+/// The mechanism with its loops closed, within its limits.
+Mechanism Assembled(const HapticArguments& arguments, Mechanism mechanism) {
+  const std::string file = arguments.file.string();
+  if (arguments.tolerance) mechanism.tolerance = *arguments.tolerance;
+  const AssembledMechanism assembled = AssembleMechanism(mechanism);
+  if (!assembled.summary.closed) {
+    throw std::runtime_error(fmt::format("{}: {}", file, assembled.summary.message));
+  }
+  for (const std::string& outside : StartsOutsideLimits(assembled.mechanism)) {
+    throw FileErrors(file, outside + "; give start values within the limits");
+  }
+  if (!arguments.quiet) {
+    for (const std::string& note : assembled.Notes()) fmt::print("note: {}\n", note);
+  }
+  return assembled.mechanism;
 }
 
 /// Joints with springs or friction stay whole: the hand's dynamics know them in the tree only.
@@ -115,8 +125,9 @@ RunnerOptions OptionsOf(const HapticArguments& arguments, const Matrix3d& R_WD,
 struct HeldMechanism {
   explicit HeldMechanism(const HapticArguments& arguments)
       : subject(ReadSubject(arguments.file, arguments.grasp)),
-        tree(BuildKinematicTree(subject.mechanism, KeepSprings(subject.mechanism))),
-        q(StartPose(tree, arguments.file)),
+        tree(BuildKinematicTree(Assembled(arguments, subject.mechanism),
+                                KeepSprings(subject.mechanism))),
+        q(StartCoordinates(tree)),
         R_WD(DeviceAxes(subject.mechanism)) {
     const GraspFrame grasp = GraspFrameOf(tree, subject.grasp);
     TreeWorkspace<double> ws(tree);

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "vmech/kinematics/assembly.h"
+#include "vmech/kinematics/assembled_mechanism.h"
 #include "vmech/kinematics/closure.h"
 #include "vmech/kinematics/forward_kinematics.h"
 #include "vmech/kinematics/hand_tracker.h"
@@ -123,16 +123,18 @@ KinematicTree BuildTree(Mechanism mechanism, const std::vector<StartValue>& star
   return tree;
 }
 
-VectorXd AssembledStart(const KinematicTree& tree, const std::vector<StartValue>& start) {
-  VectorXd q = StartCoordinates(tree);
-  AssemblyOptions options;
+/// The mechanism with its loops closed, the given joints where they are to start.
+Mechanism AssembledAt(Mechanism mechanism, const std::vector<StartValue>& start,
+                      std::vector<std::string>* warnings) {
+  AssembleOptions options;
   for (const StartValue& value : start) {
-    q[CoordinateIndex(tree, value.joint, 0)] = value.value;
-    options.fixed.push_back(VelocityIndex(tree, value.joint, 0));
+    mechanism.joints[value.joint].start = {value.value};
+    options.fixed_joints.push_back(value.joint);
   }
-  const AssemblySummary assembly = Assemble(tree, options, &q);
-  if (!assembly.closed) throw std::runtime_error(assembly.message);
-  return q;
+  const AssembledMechanism assembled = RequireAssembled(mechanism, options);
+  const std::vector<std::string> notes = assembled.Notes();
+  warnings->insert(warnings->end(), notes.begin(), notes.end());
+  return assembled.mechanism;
 }
 
 Posed ReadTarget(const std::string& text, const Units& units, const Posed& X_WG_start) {
@@ -249,8 +251,10 @@ IkAnswer AnswerIk(const IkQuestion& question) {
   for (const std::string& text : question.start) {
     start.push_back(ReadStart(mechanism, answer.units, text));
   }
-  answer.tree = BuildTree(std::move(mechanism), start, options.joint_limits, &answer.warnings);
-  const VectorXd q_start = AssembledStart(answer.tree, start);
+  if (question.tolerance) mechanism.tolerance = *question.tolerance;
+  answer.tree = BuildTree(AssembledAt(std::move(mechanism), start, &answer.warnings), start,
+                          options.joint_limits, &answer.warnings);
+  const VectorXd q_start = StartCoordinates(answer.tree);
 
   const GraspFrame frame = GraspFrameOf(answer.tree, grasp);
   InverseKinematics problem(answer.tree, frame, options);

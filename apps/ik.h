@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,7 @@ struct IkQuestion {
   std::string solver = "nullspace";
   bool paper_rotation = false;  ///< the rotation error of paper eq. (3)
   bool no_limits = false;
+  std::optional<double> tolerance;  ///< instead of the mechanism's own
 };
 
 /// The branch of a solution, seen from the start.

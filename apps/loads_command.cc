@@ -125,6 +125,7 @@ void PrintSummary(const StudyFile& file, const StudyOutcome& outcome, const Outp
   for (size_t i = 0; i < outcome.bearings.size(); ++i) {
     fmt::print("{}", BearingLines(file, file.bearings[i], outcome.bearings[i]));
   }
+  for (const std::string& note : outcome.loads.notes) fmt::print("note: {}\n", note);
   for (const std::string& warning : outcome.warnings) fmt::print("warning: {}\n", warning);
   fmt::print("written to {}\n", (folder.path() / "report.html").string());
 }
@@ -132,7 +133,8 @@ void PrintSummary(const StudyFile& file, const StudyOutcome& outcome, const Outp
 }  // namespace
 
 int RunLoads(const LoadsArguments& arguments) {
-  const StudyFile file = ReadOrRedirect(arguments.study);
+  StudyFile file = ReadOrRedirect(arguments.study);
+  if (arguments.tolerance) file.study.mechanism.tolerance = *arguments.tolerance;
   LoadStudyOptions options;
   options.threads = Threads(arguments);
   StudyOutcome outcome;

@@ -10,6 +10,7 @@
 #include "vmech/apps/commands.h"
 #include "vmech/apps/import_launcher.h"
 #include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/mechanism.h"
 
 namespace {
 
@@ -55,6 +56,15 @@ constexpr const char* kIkHelp =
     "  vmech ik four-bar.yaml --target \"0.9 0.6 0\"\n"
     "  vmech ik arm.yaml --target \"300 0 450  0 90 0\" --grasp handle --start elbow=40";
 
+void AddTolerance(CLI::App* command, std::optional<double>* tolerance) {
+  command
+      ->add_option("--tolerance", *tolerance,
+                   "how far rounded figures may keep loops from closing, in rad and parts of the "
+                   "mechanism's length (default: that of the mechanism file, or 1e-4)")
+      ->check(CLI::Range(0.0, vmech::kWidestTolerance, "0..0.01"))
+      ->type_name("NUMBER");
+}
+
 void AddIk(CLI::App* app, vmech::IkArguments* ik) {
   CLI::App* command = app->add_subcommand("ik", kIkHelp);
   vmech::IkQuestion& question = ik->question;
@@ -84,6 +94,7 @@ void AddIk(CLI::App* app, vmech::IkArguments* ik) {
   command->add_flag("--paper-rotation", question.paper_rotation,
                     "rotation error of the paper (sine) instead of the angle");
   command->add_flag("--no-limits", question.no_limits, "ignore the limits of joints");
+  AddTolerance(command, &question.tolerance);
   command->add_flag("--json", ik->json, "print JSON instead of text");
 }
 
@@ -100,6 +111,7 @@ void AddExport(CLI::App* app, vmech::ExportArguments* arguments) {
       ->required()
       ->type_name("FILE");
   command->add_option("--out", arguments->out, "file to write")->required()->type_name("FILE");
+  AddTolerance(command, &arguments->tolerance);
   command->add_flag("--dh-frames", arguments->dh_frames,
                     "draw every link in its Denavit-Hartenberg frame");
   command->add_flag("--si", arguments->si,
@@ -166,6 +178,7 @@ void AddHaptic(CLI::App* app, vmech::HapticArguments* haptic) {
                     "simulated operator lets go for a second now and then");
   command->add_option("--record", haptic->record, "write every tick to this file")
       ->type_name("FILE");
+  AddTolerance(command, &haptic->tolerance);
   command->add_flag("--free", haptic->free_running, "as fast as it computes, in simulated time");
   command->add_flag("-q,--quiet", haptic->quiet, "print nothing but errors");
 }
@@ -198,6 +211,7 @@ int Run(int argc, char** argv) {
   check_command->add_option("MECHANISM", check.mechanism, "mechanism file, YAML or JSON")
       ->required()
       ->type_name("FILE");
+  AddTolerance(check_command, &check.tolerance);
   check_command->add_flag("--json", check.json, "print JSON instead of text");
 
   vmech::LoadsArguments loads;
@@ -212,6 +226,7 @@ int Run(int argc, char** argv) {
   loads_command->add_option("--threads", loads.threads, "threads; 0 for all processors")
       ->check(CLI::Range(0, 64, "0..64"))
       ->capture_default_str();
+  AddTolerance(loads_command, &loads.tolerance);
   loads_command->add_flag("-q,--quiet", loads.quiet, "print nothing but errors");
 
   vmech::CompareArguments compare;

@@ -260,11 +260,13 @@ StudyFile ParseStudy(std::string_view text, const std::filesystem::path& path) {
   file.path = path;
   if (root.CheckKeys({"vmech_study", "mechanism", "motion"},
                      {"name", "description", "units", "external", "rule", "norm_length", "bearings",
-                      "catalogue"})) {
+                      "catalogue", "limits"})) {
     CheckVersion(root["vmech_study"]);
     file.name = root["name"].Text(path.stem().string());
     file.description = root["description"].Text();
     file.study.rule = ReadRule(root["rule"]);
+    file.study.units = DisplayUnitsOf(root["units"], ReadUnits(root["units"]));
+    file.study.stop_at_limits = root["limits"].Word<bool>({{"warn", false}, {"stop", true}}, false);
     const std::filesystem::path folder = path.parent_path();
     file.catalogue = ReadNamedCatalogue(root["catalogue"], folder);
     if (ReadNamedMechanism(root["mechanism"], folder, &file)) ReadReferences(root, folder, &file);

@@ -67,8 +67,8 @@ std::string SummaryJson(const StudyFile& file, const StudyOutcome& outcome) {
             {"redundant_equations", loads.redundant_equations},
             {"cut_joints", loads.cut_joints},
             {"idle_freedoms", loads.idle},
-            {"max_closure_error", loads.max_closure},
-            {"max_power_error", loads.max_power_error},
+            {"max_closure_error", Finite(loads.max_closure)},
+            {"max_power_error", Finite(loads.max_power_error)},
             {"singular_poses", loads.singular_poses}};
   Json drives = Json::array();
   for (size_t k = 0; k < file.study.drives.size(); ++k) {
@@ -78,7 +78,8 @@ std::string SummaryJson(const StudyFile& file, const StudyOutcome& outcome) {
     }
     drives.push_back({{"joint", file.study.mechanism.joints[file.study.drives[k].joint].name},
                       {"freedom", file.study.drives[k].freedom + 1},
-                      {"peak_force", peak}});
+                      {"peak_force", peak},
+                      {"certainty", NameOf(loads.drive_certainty[k])}});
   }
   json["drives"] = drives;
   json["joints"] = Json::array();
@@ -90,6 +91,7 @@ std::string SummaryJson(const StudyFile& file, const StudyOutcome& outcome) {
     json["bearings"].push_back(BearingSummary(file, bearing));
   }
   json["warnings"] = outcome.warnings;
+  json["notes"] = loads.notes;
   return json.dump(2) + "\n";
 }
 

@@ -42,7 +42,8 @@ bool ClosedWalk::TryStep(double size, const VectorXd& wish) {
   if (along.norm() <= kNoMotion * wish.norm()) return false;
   VectorXd next = q_;
   Integrate(tree_, size * scale_.cwiseProduct(along.normalized()), &next);
-  if (!Assemble(tree_, {}, &next).closed || !WithinLimits(next)) return false;
+  if (!Assemble(tree_, AssemblyOptions::Nearby(), &next).closed || !WithinLimits(next))
+    return false;
   const double distance = ConfigurationDistance(tree_, q_, next);
   if (distance < kShortest * size || distance > kLongest * size) return false;
   if (!LoopsKeepRank(next) && LoopsKeepRank(q_)) return false;

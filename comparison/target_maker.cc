@@ -9,7 +9,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "vmech/kinematics/assembly.h"
+#include "vmech/kinematics/assembled_mechanism.h"
 #include "vmech/kinematics/configuration_distance.h"
 #include "vmech/kinematics/linear_algebra.h"
 #include "vmech/kinematics/mobility.h"
@@ -23,11 +23,12 @@ constexpr double kStride = 0.25;      // of a walk that loses its way [rad, char
 constexpr double kTurn = 0.5;         // per step of a walk [rad]
 constexpr double kPathTurn = 0.05;    // per step of a path
 
-VectorXd ClosedStart(const KinematicTree& tree, const std::string& name) {
-  VectorXd q = StartCoordinates(tree);
-  const AssemblySummary assembly = Assemble(tree, {}, &q);
-  if (!assembly.closed) throw std::runtime_error(name + ": " + assembly.message);
-  return q;
+KinematicTree AssembledTree(const SuiteMechanism& given) {
+  const AssembledMechanism assembled = AssembleMechanism(given.mechanism);
+  if (!assembled.summary.closed) {
+    throw std::runtime_error(given.name + ": " + assembled.summary.message);
+  }
+  return BuildKinematicTree(assembled.mechanism);
 }
 
 VectorXd RandomConfiguration(Subject* subject, PortableRandom* random) {
@@ -194,11 +195,11 @@ Problem PoseProblem(Subject* subject, const TargetBlock& block, PortableRandom* 
 }  // namespace
 
 Subject::Subject(const SuiteMechanism& given)
-    : tree_(BuildKinematicTree(given.mechanism)),
+    : tree_(AssembledTree(given)),
       problem_(tree_, GraspFrame{tree_.NodeOfLink(given.grasp.link),
                                  tree_.X_node_link(given.grasp.link) * given.grasp.X_LG,
                                  given.grasp.kind}),
-      q_start_(ClosedStart(tree_, given.name)),
+      q_start_(StartCoordinates(tree_)),
       rank_(AnalyseMobility(tree_, q_start_).rank),
       unseen_(FindUnseenMotions(&problem_, q_start_).count()) {}
 

@@ -26,8 +26,8 @@ MatrixXd DependentColumns(const KinematicTree& tree, const CoordinatePartition& 
 /// Marks the components that a dimensionless set of multipliers loads.
 class LoadMarker {
  public:
-  LoadMarker(const KinematicTree& tree, const VectorXd& q)
-      : tree_(tree), ws_(tree), joints_(tree.mechanism.joints.size()) {
+  LoadMarker(const KinematicTree& tree, const VectorXd& q, double touches)
+      : tree_(tree), touches_(touches), ws_(tree), joints_(tree.mechanism.joints.size()) {
     EvaluatePose(tree, q, &ws_);
     JointFrames(tree, ws_, &joints_);
   }
@@ -47,13 +47,14 @@ class LoadMarker {
       Vector6d load = joints_[j].W_M.In(joints_[j].R_WF).Stacked();
       load.head<3>() *= tree_.length;
       for (int i = 0; i < 6; ++i) {
-        if (std::abs(load[i]) > kTouches) (*result)[j][i] = verdict;
+        if (std::abs(load[i]) > touches_) (*result)[j][i] = verdict;
       }
     }
   }
 
  private:
   const KinematicTree& tree_;
+  double touches_;
   TreeWorkspace<double> ws_;
   std::vector<JointState<double>> joints_;
 };
@@ -61,8 +62,8 @@ class LoadMarker {
 }  // namespace
 
 std::vector<JointCertainty> JudgeCertainty(const KinematicTree& tree,
-                                           const CoordinatePartition& partition,
-                                           const VectorXd& q) {
+                                           const CoordinatePartition& partition, const VectorXd& q,
+                                           double rounding) {
   JointCertainty all_certain;
   all_certain.fill(Certainty::kCertain);
   std::vector<JointCertainty> result(tree.mechanism.joints.size(), all_certain);
@@ -71,7 +72,7 @@ std::vector<JointCertainty> JudgeCertainty(const KinematicTree& tree,
   const MatrixXd C_u = DependentColumns(tree, partition, q);
   const LeftSingularVectors svd = FindLeftSingularVectors(C_u);
   const VectorXd& sigma = svd.values;
-  LoadMarker marker(tree, q);
+  LoadMarker marker(tree, q, std::max(kTouches, TouchOfRounding(rounding)));
   // First what grows at a dead centre, then what stays open anywhere.
   for (Eigen::Index k = 0; k < sigma.size(); ++k) {
     if (sigma[k] <= kSingularTolerance * sigma[0]) {

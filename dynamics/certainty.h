@@ -36,8 +36,16 @@ using JointCertainty = std::array<Certainty, 6>;
 /// direction of multipliers that the dependent freedoms hardly feel (smallest singular value of the
 /// dimensionless C_u below kSingularTolerance) marks the components that it loads as singular.
 /// The verdict depends on rigid-body equilibrium alone, not on where the loops are cut.
+/// `rounding`: by how much figures were off (AssembledMechanism::correction); axes that are turned
+/// by no more than some of that do not carry an open load into a component that has none.
 std::vector<JointCertainty> JudgeCertainty(const KinematicTree& tree,
-                                           const CoordinatePartition& partition, const VectorXd& q);
+                                           const CoordinatePartition& partition, const VectorXd& q,
+                                           double rounding = 0);
+
+/// Of a unit load; less is that of rounded axes, times what a mechanism may make of it.
+inline double TouchOfRounding(double rounding) {
+  return 30 * rounding;
+}
 
 /// Of the largest singular value of C_u; a pose this near to a dead centre multiplies loads by its
 /// inverse.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vmech/kinematics/packet.h"
+
 namespace vmech {
 namespace {
 

@@ -2,7 +2,6 @@
 
 #include <array>
 
-#include "vmech/kinematics/packet.h"
 #include "vmech/mechanisms/mechanism.h"
 
 namespace vmech {

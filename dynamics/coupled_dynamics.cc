@@ -5,6 +5,8 @@
 
 #include "vmech/dynamics/contact_friction.h"
 #include "vmech/kinematics/forward_kinematics.h"
+#include "vmech/kinematics/linear_algebra.h"
+#include "vmech/kinematics/mobility.h"
 #include "vmech/kinematics/rotation_error.h"
 #include "vmech/kinematics/screw_algebra.h"
 #include "vmech/solvers/small_ldlt.h"
@@ -15,7 +17,8 @@ namespace {
 
 /// Of loops against the rest, see SaddleSystem.
 constexpr double kLoopWeight = 1e5;
-constexpr double kBallast = 1e-14;  // of the largest inertia
+constexpr double kBallast = 1e-14;   // of the largest inertia
+constexpr double kNoInertia = 1e-9;  // of the largest: rounding, times the weight of the loops
 /// A limit's stiffness over what it has to hold.
 constexpr double kHardLimit = 1e4;
 constexpr int kContactChanges = 3;
@@ -111,12 +114,30 @@ CoupledDynamics::CoupledDynamics(const KinematicTree& tree, const GraspFrame& gr
   TakeInertia();
   TakeVelocities();
   BiasForces();
-  ballast_ = kBallast / T_ * M_.diagonal().maxCoeff();
+  ballast_ = VectorXd::Constant(tree.nv, kBallast / T_ * M_.diagonal().maxCoeff());
   BuildSystem();
   AddCoupling();
+  AddBallast();
   const double rows = pose_.C().squaredNorm();
   if (rows > 0) system_.SetWeight(kLoopWeight * A_.trace() / rows);
   system_.SetConstraints(pose_.C());
+}
+
+/// A freedom that nothing resists, such as the spin of a rod without mass between two balls, would
+/// move by rounding, which the weight of the loops makes large. Its coordinates get an inertia that
+/// is still nothing beside the rest.
+void CoupledDynamics::AddBallast() {
+  constexpr double kSpinBallast = 1e-8, kTakesPart = 0.1;
+  const MatrixXd N = FindNullSpace(pose_.C(), kRankTolerance).basis;
+  if (N.cols() == 0) return;
+  const MatrixXd M = M_.topLeftCorner(tree_.nv, tree_.nv);
+  const MatrixXd idle = N * FindKernel(N.transpose() * M * N, kNoInertia * M.diagonal().maxCoeff());
+  for (Eigen::Index k = 0; k < idle.cols(); ++k) {
+    const double largest = idle.col(k).cwiseAbs().maxCoeff();
+    for (int v = 0; v < tree_.nv; ++v) {
+      if (std::abs(idle(v, k)) > kTakesPart * largest) ballast_[v] = kSpinBallast * A_.trace();
+    }
+  }
 }
 
 void CoupledDynamics::ListFreedoms() {
@@ -188,7 +209,7 @@ void CoupledDynamics::BuildSystem() noexcept {
   const double rate = 1 / T_;
   A_ = rate * M_;
   right_ = rate * momenta_ - bias_;
-  A_.diagonal().array() += ballast_;
+  A_.diagonal() += ballast_;
   AddPassive();
 }
 

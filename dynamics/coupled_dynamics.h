@@ -102,6 +102,7 @@ class CoupledDynamics {
   enum class Solving { kFully, kRoughly };
 
   void ListFreedoms();
+  void AddBallast();
   void BiasForces() noexcept;
   void BuildSystem() noexcept;
   void AddPassive() noexcept;
@@ -128,8 +129,8 @@ class CoupledDynamics {
   MatrixXd M_, A_, limited_A_, rootKJ_;
   VectorXd q_, v_, next_q_, next_v_, vdot_, momenta_, bias_, right_, limited_right_, x_, aim_,
       rest_, mu_, d_, opening_;
-  VectorXd miss_;   // by which the last step's aim failed
-  double ballast_;  // of every freedom: holds one without inertia
+  VectorXd miss_;     // by which the last step's aim failed
+  VectorXd ballast_;  // of every freedom [as M/T]: holds those without inertia
   std::vector<Wrenchd> joints_;
   std::vector<Freedom> freedoms_;
   MovingFrame hand_;

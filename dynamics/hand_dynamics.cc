@@ -7,6 +7,8 @@
 #include <stdexcept>
 
 #include "vmech/dynamics/contact_friction.h"
+#include "vmech/dynamics/idle_freedoms.h"
+#include "vmech/kinematics/forward_kinematics.h"
 #include "vmech/kinematics/linear_algebra.h"
 #include "vmech/kinematics/screw_algebra.h"
 #include "vmech/solvers/small_ldlt.h"
@@ -18,6 +20,7 @@ namespace {
 constexpr double kLoopWeight = 1e5;
 /// Of the trace: holds what neither hand nor loops move, at a dead centre.
 constexpr double kDamping = 1e-11;
+constexpr double kHeld = 1e-8;  // what neither moves anywhere
 
 Vector6d RowsThatCount(Vector6d K, GraspKind kind) {
   if (kind == GraspKind::kPoint) K.tail<3>().setZero();
@@ -41,6 +44,7 @@ HandDynamics::HandDynamics(const KinematicTree& tree, const GraspFrame& grasp,
       system_(tree.nv, static_cast<int>(pose_.C().rows())),
       rootKJ_(MatrixXd::Zero(PaddedSize(6), tree.nv)),
       A_(MatrixXd::Zero(tree.nv, tree.nv)),
+      damping_(VectorXd::Constant(tree.nv, kDamping)),
       q_(q),
       v_(VectorXd::Zero(tree.nv)),
       felt_v_(v_),
@@ -58,23 +62,32 @@ HandDynamics::HandDynamics(const KinematicTree& tree, const GraspFrame& grasp,
   if (!(k > 0)) throw std::invalid_argument("hand: a stiffness above zero is needed");
   system_.SetWeight(kLoopWeight * k * tree.length * tree.length);
   SetPose(q);
-  RefuseIdleFreedoms();
+  HoldIdleFreedoms();
 }
 
-/// Every velocity must show at the hand or in a loop.
-void HandDynamics::RefuseIdleFreedoms() const {
+/// Every velocity must show at the hand or in a loop, or be without consequence.
+void HandDynamics::HoldIdleFreedoms() {
   MatrixXd A(6 + pose_.C().rows(), tree_.nv);
   const Vector6d root = root_K_ / std::sqrt(MeanStiffness(K_, tree_.length));
   A << root.asDiagonal() * pose_.J() / tree_.length, pose_.C();
-  constexpr double kMoved = 1e-6;
+  constexpr double kMoved = 1e-6, kTakesPart = 0.1;
   const NullSpace free = FindNullSpace(A, kMoved);
-  if (free.basis.cols() == 0) return;
-  Eigen::Index most = 0;
-  free.basis.col(0).cwiseAbs().maxCoeff(&most);
-  throw std::invalid_argument(fmt::format(
-      "the grasp does not move '{}': {} of the mechanism's freedoms stay loose in this hand. Hold "
-      "another link, or hold it rigidly instead of at a point",
-      NameOfVelocity(tree_, static_cast<int>(most)), free.basis.cols()));
+  TreeWorkspace<double> ws(tree_);
+  ForwardKinematics(tree_, q_.data(), &ws);
+  for (Eigen::Index k = 0; k < free.basis.cols(); ++k) {
+    const VectorXd v = free.basis.col(k);
+    Eigen::Index most = 0;
+    const double largest = v.cwiseAbs().maxCoeff(&most);
+    if (ShiftOfCentres(tree_, v, &ws) > tree_.mechanism.tolerance) {
+      throw std::invalid_argument(fmt::format(
+          "the grasp does not move '{}': {} of the mechanism's freedoms stay loose in this hand. "
+          "Hold another link, or hold it rigidly instead of at a point",
+          NameOfVelocity(tree_, static_cast<int>(most)), free.basis.cols()));
+    }
+    for (int i = 0; i < tree_.nv; ++i) {
+      if (std::abs(v[i]) > kTakesPart * largest) damping_[i] = kHeld;
+    }
+  }
 }
 
 bool HandDynamics::Evaluate(const Vector6d& V_WG, const Vector6d& A_WG, double inertia) noexcept {
@@ -106,7 +119,7 @@ bool HandDynamics::Factor() noexcept {
   pose_.TakeWeightedJacobian(ScrewOf(root_K_), &rootKJ_);
   A_.setZero();
   system_.AddGram(rootKJ_, &A_);
-  A_.diagonal().array() += kDamping * A_.trace();
+  A_.diagonal() += A_.trace() * damping_;
   system_.SetConstraints(pose_.C());
   return system_.Factor(A_);
 }

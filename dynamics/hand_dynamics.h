@@ -26,9 +26,10 @@ class HandDynamics {
  public:
   /// Keeps references to the tree. `stiffness`: K, diagonal; rows that a point grasp ignores do not
   /// count. `q`: a closed pose, at which is judged whether the grasp moves every freedom.
-  /// @throws std::invalid_argument if it does not, naming the freedom; or if a cut joint has
-  /// springs
-  ///         or friction, or a joint has friction under load: they are beyond this path.
+  /// Freedoms that it does not move and that shift no centre of gravity, such as the spin of a rod
+  /// between two spherical joints, stand still.
+  /// @throws std::invalid_argument if it leaves others loose, naming one; or if a cut joint has
+  ///         springs or friction, or a joint has friction under load: they are beyond this path.
   HandDynamics(const KinematicTree& tree, const GraspFrame& grasp, const Vector6d& stiffness,
                const VectorXd& q);
 
@@ -56,13 +57,14 @@ class HandDynamics {
   void SolveMotion(const Vector6d& b, const VectorXd& d, VectorXd* x) noexcept;
   double SlidingPower(size_t node_index) const noexcept;
   void PassiveForces() noexcept;
-  void RefuseIdleFreedoms() const;
+  void HoldIdleFreedoms();
 
   const KinematicTree& tree_;
   Vector6d K_, root_K_;
   HeldPose pose_;
   SaddleSystem system_;
   MatrixXd rootKJ_, A_;
+  VectorXd damping_;  // [nv], of the trace of A
   VectorXd q_, v_, felt_v_, vdot_, tau_, x_, right_, d_, none_, mu_;
   std::vector<Wrenchd> joints_;
   std::vector<double> spring_length_;  // per velocity: q - rest

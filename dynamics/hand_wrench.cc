@@ -1,5 +1,6 @@
 #include "vmech/dynamics/hand_wrench.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "vmech/dynamics/newton_euler.h"
@@ -10,20 +11,26 @@
 namespace vmech {
 namespace {
 
-MatrixXd GraspMotions(const LoadModel& model, const TreeWorkspace<double>& ws, const MatrixXd& N) {
-  Matrix6Xd J(6, model.tree.nv);
-  PointJacobian(model.tree, ws, GraspNode(model), GraspPose(model, ws).p, &J);
-  return J * N;
-}
+/// Of motions that the hand sees, against the largest: what is less is not seen.
+constexpr double kUnseen = 1e-9;
 
-/// s of the least squares (J N) s = V in the metric K.
+/// The shortest s of the least squares (J N) s = V in the metric K: without what the hand does not
+/// see.
 VectorXd NearestMotion(const LoadModel& model, const LoadWorkspace<double>& ws, const Vector6d& V) {
-  const MatrixXd JN = GraspMotions(model, ws.tree, ws.motions);
-  const MatrixXd KJN = model.hand_stiffness.asDiagonal() * JN;
-  return SolveSymmetric(JN.transpose() * KJN, KJN.transpose() * V);
+  const MatrixXd A = WeightedGraspMotions(model, ws.tree, ws.motions);
+  const double largest = A.colwise().norm().maxCoeff();
+  return MinimumNormSolution(A, model.hand_stiffness.cwiseSqrt().cwiseProduct(V),
+                             kUnseen * std::min(1.0, largest));
 }
 
 }  // namespace
+
+MatrixXd WeightedGraspMotions(const LoadModel& model, const TreeWorkspace<double>& ws,
+                              const MatrixXd& N) {
+  Matrix6Xd J(6, model.tree.nv);
+  PointJacobian(model.tree, ws, GraspNode(model), GraspPose(model, ws).p, &J);
+  return model.hand_stiffness.cwiseSqrt().asDiagonal() * J * N;
+}
 
 int GraspNode(const LoadModel& model) {
   return model.tree.NodeOfLink(model.tree.mechanism.grasps[model.hand->grasp].link);
@@ -32,15 +39,6 @@ int GraspNode(const LoadModel& model) {
 Posed GraspPose(const LoadModel& model, const TreeWorkspace<double>& ws) {
   const Grasp& grasp = model.tree.mechanism.grasps[model.hand->grasp];
   return PoseInWorld(ws, GraspNode(model), model.tree.X_node_link(grasp.link) * grasp.X_LG);
-}
-
-double HandAuthority(const LoadModel& model, const TreeWorkspace<double>& ws, const MatrixXd& N) {
-  if (N.cols() == 0) return 1;
-  const MatrixXd JN = GraspMotions(model, ws, N);
-  if (N.cols() > 6) return 0;
-  const MatrixXd weighted = model.hand_stiffness.cwiseSqrt().asDiagonal() * JN;
-  const VectorXd sigma = FindLeftSingularVectors(weighted).values;
-  return sigma.minCoeff() / sigma.maxCoeff();
 }
 
 void HandVelocities(const LoadModel& model, const HandSample& hand, LoadWorkspace<double>* ws) {
@@ -53,10 +51,11 @@ void HandAccelerations(const LoadModel& model, const HandSample& hand, LoadWorks
 }
 
 void ApplyHandWrench(const LoadModel& model, LoadWorkspace<double>* ws) {
-  const MatrixXd JN = GraspMotions(model, ws->tree, ws->motions);
-  const MatrixXd KJN = model.hand_stiffness.asDiagonal() * JN;
+  const MatrixXd A = WeightedGraspMotions(model, ws->tree, ws->motions);
   const VectorXd along = ws->motions.transpose() * (ws->tau - ws->passive);
-  const Vector6d w_d = KJN * SolveSymmetric(JN.transpose() * KJN, along);
+  const double largest = A.colwise().norm().maxCoeff();
+  const Vector6d w_d = model.hand_stiffness.cwiseSqrt().cwiseProduct(
+      MinimumNormSolution(A.transpose(), along, kUnseen * std::min(1.0, largest)));
   ws->hand = {w_d.head<3>(), w_d.tail<3>()};
   const Vector3d p_WG = GraspPose(model, ws->tree).p;
   for (int n = GraspNode(model); n >= 0; n = model.tree.nodes[n].parent) {

@@ -24,8 +24,8 @@ void ApplyHandWrench(const LoadModel& model, LoadWorkspace<double>* ws);
 Posed GraspPose(const LoadModel& model, const TreeWorkspace<double>& ws);
 int GraspNode(const LoadModel& model);
 
-/// Can the hand move every free motion of the mechanism? Needs ws->motions.
-/// The least singular value of sqrt(K) J N over the largest.
-double HandAuthority(const LoadModel& model, const TreeWorkspace<double>& ws, const MatrixXd& N);
+/// K^(1/2) J N [6, motions]: how the hand sees motions N.
+MatrixXd WeightedGraspMotions(const LoadModel& model, const TreeWorkspace<double>& ws,
+                              const MatrixXd& N);
 
 }  // namespace vmech

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "vmech/dynamics/hand_wrench.h"
 #include "vmech/dynamics/newton_euler.h"
 #include "vmech/kinematics/forward_kinematics.h"
 #include "vmech/kinematics/jacobian.h"
@@ -22,15 +23,13 @@ VectorXd IdleMomentum(const LoadModel& model, const VectorXd& v, LoadWorkspace<d
   RecursiveNewtonEuler<double>(model.tree, Vector3d::Zero(), nothing.data(), &ws->tree);
   VectorXd momentum = VectorXd::Zero(model.tree.nv);
   GeneralisedForces(model.tree, ws->tree, momentum.data());
-  const auto idle = static_cast<Eigen::Index>(model.partition.idle.size());
-  return ws->motions.rightCols(idle).transpose() * momentum;
+  return ws->idle_motions.transpose() * momentum;
 }
 
 MatrixXd IdleInertia(const LoadModel& model, LoadWorkspace<double>* ws) {
-  const auto idle = static_cast<Eigen::Index>(model.partition.idle.size());
-  MatrixXd inertia(idle, idle);
-  for (Eigen::Index k = 0; k < idle; ++k) {
-    inertia.col(k) = IdleMomentum(model, ws->motions.rightCols(idle).col(k), ws);
+  MatrixXd inertia(model.idle, model.idle);
+  for (Eigen::Index k = 0; k < model.idle; ++k) {
+    inertia.col(k) = IdleMomentum(model, ws->idle_motions.col(k), ws);
   }
   return inertia;
 }
@@ -66,26 +65,45 @@ VectorXd IdleShares(const LoadModel& model, const std::vector<Posed>& before, co
     f += momentum[i].transpose() * d;
     H += momentum[i].transpose() * motion[i];
   }
-  return SolveSymmetric(H, f);
+  return SolveAboveFloor(H, f, model.no_inertia);
+}
+
+/// The motions N among which the hand cannot tell, as combinations of the columns.
+MatrixXd UnseenByHand(const LoadModel& model, const TreeWorkspace<double>& ws, const MatrixXd& N) {
+  const MatrixXd seen = WeightedGraspMotions(model, ws, N);
+  return N * FindLeftSingularVectors(seen.transpose()).vectors.rightCols(model.idle);
+}
+
+MatrixXd IdleAmong(const LoadModel& model, const TreeWorkspace<double>& ws, const MatrixXd& N) {
+  return model.hand ? UnseenByHand(model, ws, N) : MatrixXd(N.rightCols(model.idle));
 }
 
 }  // namespace
 
+void FindMotions(const LoadModel& model, LoadWorkspace<double>* ws) {
+  FreeMotions(ws->tree, &ws->dependents, &ws->motions);
+  if (model.idle > 0) ws->idle_motions = IdleAmong(model, ws->tree, ws->motions);
+}
+
 void RemoveIdleMomentum(const LoadModel& model, LoadWorkspace<double>* ws) {
-  const auto idle = static_cast<Eigen::Index>(model.partition.idle.size());
-  const VectorXd rate = SolveSymmetric(IdleInertia(model, ws), IdleMomentum(model, ws->v, ws));
-  ws->v -= ws->motions.rightCols(idle) * rate;
+  if (model.idle_is_held) return;
+  const VectorXd rate =
+      SolveAboveFloor(IdleInertia(model, ws), IdleMomentum(model, ws->v, ws), model.no_inertia);
+  ws->v -= ws->idle_motions * rate;
 }
 
 void SettleIdleFreedoms(const LoadModel& model, LoadWorkspace<double>* ws) {
-  const auto idle = static_cast<Eigen::Index>(model.partition.idle.size());
-  const VectorXd open = ws->motions.rightCols(idle).transpose() * (ws->tau - ws->passive);
-  ws->vdot -= ws->motions.rightCols(idle) * SolveSymmetric(IdleInertia(model, ws), open);
+  if (model.idle_is_held) return;
+  const auto open = [&]() -> VectorXd {
+    return ws->idle_motions.transpose() * (ws->tau - ws->passive);
+  };
+  ws->vdot -= ws->idle_motions * SolveAboveFloor(IdleInertia(model, ws), open(), model.no_inertia);
   ForwardVelocities(model.tree, ws->v.data(), &ws->tree);
   ForwardAccelerations<double>(model.tree, ws->v.data(), ws->vdot.data(), &ws->tree);
   RecursiveNewtonEuler<double>(model.tree, model.tree.mechanism.gravity_W, ws->applied.data(),
                                &ws->tree);
   GeneralisedForces(model.tree, ws->tree, ws->tau.data());
+  ws->unresisted = open().cwiseAbs().maxCoeff();
 }
 
 void IdlePositions::Remember(const TreeWorkspace<double>& ws) {
@@ -100,30 +118,30 @@ void IdlePositions::Settle(double tolerance, DependentSolver<double>* dependents
                            TreeWorkspace<double>* ws, VectorXd* q) const {
   constexpr int kMaxSteps = 20, kClosingSteps = 6;
   constexpr double kSettled = 1e-14;  // [rad]
-  const auto idle = static_cast<Eigen::Index>(model_.partition.idle.size());
-  MatrixXd N(model_.tree.nv, static_cast<Eigen::Index>(model_.partition.driven.size()) + idle);
+  if (model_.idle_is_held) return;
+  const CoordinatePartition& partition = dependents->partition();
+  MatrixXd N(model_.tree.nv,
+             static_cast<Eigen::Index>(partition.driven.size() + partition.idle.size()));
   for (int step = 0; step < kMaxSteps; ++step) {
     EvaluatePose(model_.tree, *q, ws);
     dependents->Factor(*ws);
     FreeMotions(*ws, dependents, &N);
-    const VectorXd shift = -IdleShares(model_, before_, N.rightCols(idle), ws);
-    Integrate(model_.tree, N.rightCols(idle) * shift, q);
+    const MatrixXd idle = IdleAmong(model_, *ws, N);
+    const VectorXd shift = -IdleShares(model_, before_, idle, ws);
+    Integrate(model_.tree, idle * shift, q);
     CloseByNewton(model_.tree, tolerance, kClosingSteps, dependents, ws, q->data());
     if (shift.cwiseAbs().maxCoeff() < kSettled) return;
   }
 }
 
-double IdleShift(const LoadModel& model, const LoadWorkspace<double>& ws, int k) {
-  TreeWorkspace<double> scratch = ws.tree;
-  const auto column = static_cast<Eigen::Index>(model.partition.driven.size()) + k;
-  const VectorXd v = ws.motions.col(column);
-  ForwardVelocities(model.tree, v.data(), &scratch);
+double ShiftOfCentres(const KinematicTree& tree, const VectorXd& v, TreeWorkspace<double>* ws) {
+  ForwardVelocities(tree, v.data(), ws);
   double shift = 0;
-  for (size_t i = 0; i < model.tree.nodes.size(); ++i) {
-    if (model.tree.nodes[i].mass == 0) continue;
-    const NodeState<double>& s = scratch.nodes[i];
-    const Vector3d c = s.X_WB.R * model.tree.nodes[i].p_BoBcm;
-    shift = std::max(shift, (s.v + s.w.cross(c)).norm() / model.tree.length);
+  for (size_t i = 0; i < tree.nodes.size(); ++i) {
+    if (tree.nodes[i].mass == 0) continue;
+    const NodeState<double>& s = ws->nodes[i];
+    const Vector3d c = s.X_WB.R * tree.nodes[i].p_BoBcm;
+    shift = std::max(shift, (s.v + s.w.cross(c)).norm() / tree.length);
   }
   return shift;
 }

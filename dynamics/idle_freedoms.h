@@ -12,11 +12,21 @@ namespace vmech {
 ///
 /// Both hold at all times for a rod whose mass is symmetric about the axis of its spin.
 
+/// Those without inertia (a rod without mass, or with its mass on its axis: how a distance is often
+/// drawn) have neither momentum nor force; their rates and accelerations are zero. What counts as
+/// inertia is decided against that of the whole mechanism, LoadModel::no_inertia.
+
+/// The free motions at a pose, and which of them are idle: those of the idle freedoms, or, under a
+/// hand, those that it does not see. Needs a factored ws->dependents; writes ws->motions and
+/// ws->idle_motions.
+void FindMotions(const LoadModel& model, LoadWorkspace<double>* ws);
+
 /// Adds to ws->v the idle motion that takes its momentum away. Needs X_WB and ws->motions.
 void RemoveIdleMomentum(const LoadModel& model, LoadWorkspace<double>* ws);
 
 /// Adds to ws->vdot the idle acceleration that leaves no force open along the idle freedoms; brings
-/// accelerations, F_Bo and tau up to date.
+/// accelerations, F_Bo and tau up to date. Writes ws->unresisted, the force that is left where no
+/// inertia takes it.
 void SettleIdleFreedoms(const LoadModel& model, LoadWorkspace<double>* ws);
 
 /// Where an idle freedom has got to: the discrete form of the above. Between one pose and the next,
@@ -40,8 +50,8 @@ class IdlePositions {
   std::vector<Posed> before_;  ///< per node: orientation and centre of gravity
 };
 
-/// How much a unit rate of the k-th idle freedom shifts the centre of gravity of any link, in
-/// characteristic lengths: above roundoff, the loads depend on a motion that no drive prescribes.
-double IdleShift(const LoadModel& model, const LoadWorkspace<double>& ws, int k);
+/// How much velocities v shift the centre of gravity of any link, in characteristic lengths: above
+/// roundoff, weight and inertia depend on them. Needs X_WB; node velocities are scratch.
+double ShiftOfCentres(const KinematicTree& tree, const VectorXd& v, TreeWorkspace<double>* ws);
 
 }  // namespace vmech

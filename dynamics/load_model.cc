@@ -9,8 +9,9 @@
 #include "vmech/dynamics/hand_wrench.h"
 #include "vmech/dynamics/idle_freedoms.h"
 #include "vmech/dynamics/passive.h"
-#include "vmech/kinematics/assembly.h"
+#include "vmech/kinematics/assembled_mechanism.h"
 #include "vmech/kinematics/jacobian.h"
+#include "vmech/kinematics/linear_algebra.h"
 
 namespace vmech {
 namespace {
@@ -61,35 +62,87 @@ Vector6d HandWeights(const LoadStudy& study, double length) {
   return K;
 }
 
-/// The idle freedoms must not matter to the loads; the hand must reach every freedom.
+/// Moments of inertia that are rounding beside those of the mechanism [kg m^2].
+double NoInertia(const KinematicTree& tree) {
+  constexpr double kRounding = 1e-12;
+  double mass = 0;
+  for (const TreeNode& node : tree.nodes) mass += node.mass;
+  return kRounding * mass * tree.length * tree.length;
+}
+
+/// How many of the free motions at a pose the hand does not see.
+int CountUnseen(const LoadModel& model, const LoadWorkspace<double>& ws) {
+  constexpr double kUnseen = 1e-6;
+  const VectorXd sigma =
+      FindLeftSingularVectors(WeightedGraspMotions(model, ws.tree, ws.motions).transpose()).values;
+  const auto seen = (sigma.array() > kUnseen * sigma.maxCoeff()).count();
+  return static_cast<int>(ws.motions.cols() - seen);
+}
+
+/// The velocity that has most to do with an idle motion.
+std::string NameOfIdle(const LoadModel& model, const LoadWorkspace<double>& ws, int k) {
+  Eigen::Index most = 0;
+  ws.idle_motions.col(k).cwiseAbs().maxCoeff(&most);
+  return NameOfVelocity(model.tree, model.hand ? static_cast<int>(most) : model.partition.idle[k]);
+}
+
+std::string NotPrescribed(const LoadStudy& study, const PreparedStudy& prepared,
+                          const std::string& freedom) {
+  if (study.hand) {
+    return fmt::format(
+        "the mechanism has mobility {} and the grasp '{}' does not prescribe all of it: some links "
+        "can flop about, '{}' among them. Hold it at another link, rigidly rather than at a point, "
+        "or drive joints",
+        prepared.mobility.mobility, study.mechanism.grasps[study.hand->grasp].name, freedom);
+  }
+  return fmt::format(
+      "the mechanism has mobility {} and {} drive(s): nothing prescribes the freedom '{}', and it "
+      "moves links whose weight and inertia count. Add a drive there",
+      prepared.mobility.mobility, study.drives.size(), freedom);
+}
+
+/// The idle freedoms must not matter to the loads. Those that hardly do, for the rounding of a
+/// centre of gravity that belongs on an axis, are held.
 void RequirePrescribed(const LoadStudy& study, PreparedStudy* prepared) {
-  const LoadModel& model = prepared->model;
+  constexpr double kShifts = 1e-6;
+  LoadModel& model = prepared->model;
+  model.idle = static_cast<int>(model.partition.idle.size());
+  model.no_inertia = NoInertia(model.tree);
   LoadWorkspace<double> ws(model);
   if (ws.motions.size() == 0) return;
   EvaluatePose(model.tree, prepared->mobility.q_general, &ws.tree);
   ws.dependents.Factor(ws.tree);
   FreeMotions(ws.tree, &ws.dependents, &ws.motions);
-  constexpr double kNoAuthority = 1e-6;
-  if (model.hand && HandAuthority(model, ws.tree, ws.motions) < kNoAuthority) {
-    throw std::invalid_argument(fmt::format(
-        "the mechanism has mobility {} and the grasp '{}' does not prescribe all of it: some links "
-        "can flop about. Hold it at another link, rigidly rather than at a point, or drive joints",
-        prepared->mobility.mobility, study.mechanism.grasps[study.hand->grasp].name));
-  }
-  constexpr double kShifts = 1e-6;
-  for (size_t k = 0; k < model.partition.idle.size(); ++k) {
-    const std::string name = NameOfVelocity(model.tree, model.partition.idle[k]);
+  if (model.hand) model.idle = CountUnseen(model, ws);
+  FindMotions(model, &ws);
+  for (int k = 0; k < model.idle; ++k) {
+    const std::string name = NameOfIdle(model, ws, k);
     prepared->idle.push_back(name);
-    if (IdleShift(model, ws, static_cast<int>(k)) < kShifts) continue;
-    throw std::invalid_argument(
-        fmt::format("the mechanism has mobility {} and {} drive(s): nothing prescribes the freedom "
-                    "'{}', and it "
-                    "moves links whose weight and inertia count. Add a drive there",
-                    prepared->mobility.mobility, study.drives.size(), name));
+    const double shift = ShiftOfCentres(model.tree, ws.idle_motions.col(k), &ws.tree);
+    if (shift < kShifts) continue;
+    if (shift > model.tree.mechanism.tolerance) {
+      throw std::invalid_argument(NotPrescribed(study, *prepared, name));
+    }
+    model.idle_is_held = true;
+    prepared->notes.push_back(fmt::format(
+        "nothing prescribes the freedom '{}'; centres of gravity are off its axis by {:.2g} of the "
+        "mechanism's length, which is taken for rounding: it is held",
+        name, shift));
   }
 }
 
 }  // namespace
+
+std::string DrivesAt(const LoadStudy& study, const std::vector<double>& positions) {
+  std::string text;
+  for (size_t k = 0; k < study.drives.size(); ++k) {
+    const JointDrive& drive = study.drives[k];
+    const Joint& joint = study.mechanism.joints[drive.joint];
+    text += fmt::format("{}'{}' at {}", k == 0 ? "with " : ", ", joint.name,
+                        FormatCoordinate(study.units, joint, drive.freedom, positions[k]));
+  }
+  return text.empty() ? "under the hand" : text;
+}
 
 PreparedStudy PrepareStudy(const LoadStudy& study) {
   RequireDrive(study);
@@ -98,10 +151,12 @@ PreparedStudy PrepareStudy(const LoadStudy& study) {
 
   PreparedStudy prepared;
   LoadModel& model = prepared.model;
-  model.tree = BuildKinematicTree(study.mechanism, cuts);
+  const AssembledMechanism assembled = RequireAssembled(study.mechanism);
+  prepared.notes = assembled.Notes();
+  prepared.closure_tolerance = assembled.closure_tolerance;
+  model.rounding = assembled.correction;
+  model.tree = BuildKinematicTree(assembled.mechanism, cuts);
   prepared.q_start = StartCoordinates(model.tree);
-  const AssemblySummary assembly = Assemble(model.tree, {}, &prepared.q_start);
-  if (!assembly.closed) throw std::runtime_error(assembly.message);
   prepared.mobility = AnalyseMobility(model.tree, prepared.q_start);
   model.partition = study.hand ? PartitionAtPose(model.tree, prepared.mobility.q_general)
                                : PartitionForDrives(model.tree, prepared.mobility.q_general,

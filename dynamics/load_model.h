@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "vmech/dynamics/pose_loads.h"
@@ -14,14 +15,21 @@ struct PreparedStudy {
   LoadModel model;
   VectorXd q_start;  ///< closed pose near the start values
   Mobility mobility;
+  double closure_tolerance = 0;   ///< as AssembledMechanism::closure_tolerance
   std::vector<std::string> idle;  ///< names of idle freedoms
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings, notes;
 };
 
 /// @throws std::invalid_argument if the study contradicts itself (drive and hand, a joint
 ///         without that freedom, drives that cannot all move, freedoms that nothing prescribes and
 ///         that the loads depend on), std::runtime_error if the loops cannot be closed.
 PreparedStudy PrepareStudy(const LoadStudy& study);
+
+/// The drives' positions in words, "with 'main' at 180 deg", and what may be done at a dead centre.
+std::string DrivesAt(const LoadStudy& study, const std::vector<double>& positions);
+inline constexpr std::string_view kPastDeadCentre =
+    "Drive another joint, stop the motion short of it, or leave the pose out by another start or "
+    "number of steps";
 
 /// Follows the motion from pose to pose on one assembly branch. Poses come from the loop equations;
 /// between them the drive moves in smaller steps where a full one would be too long to be sure of

@@ -1,9 +1,11 @@
 #include "vmech/dynamics/load_study.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <thread>
@@ -11,6 +13,7 @@
 #include "vmech/dynamics/external_loads.h"
 #include "vmech/dynamics/friction_report.h"
 #include "vmech/dynamics/load_model.h"
+#include "vmech/dynamics/rule_dependence.h"
 #include "vmech/kinematics/packet.h"
 
 namespace vmech {
@@ -36,9 +39,9 @@ void RequireInsideTables(const LoadModel& model, const Motion& motion) {
 /// Evaluates all poses on several threads; each pose depends on its own input only.
 class ParallelEvaluation {
  public:
-  ParallelEvaluation(const LoadModel& model, const Motion& motion, const LoadStudyOptions& options,
-                     LoadStudyResult* result)
-      : model_(model), motion_(motion), options_(options), poses_(result->poses) {}
+  ParallelEvaluation(const LoadStudy& study, const LoadModel& model, const Motion& motion,
+                     const LoadStudyOptions& options, LoadStudyResult* result)
+      : study_(study), model_(model), motion_(motion), options_(options), poses_(result->poses) {}
 
   void Run() {
     const size_t chunks = (motion_.size() + kChunk - 1) / kChunk;
@@ -89,12 +92,18 @@ class ParallelEvaluation {
   }
 
   [[noreturn]] void ReportDeadCentre(size_t i) const {
-    throw std::runtime_error(fmt::format(
-        "pose {} (t = {:.6g} s) is a dead centre: the drive does not determine how the mechanism "
-        "moves on, and no drive force holds it. Drive another joint, or leave this pose out",
-        i, motion_.times[i]));
+    std::vector<double> positions;
+    for (size_t k = 0; k < study_.drives.size(); ++k) {
+      positions.push_back(motion_.drives[i * study_.drives.size() + k].position);
+    }
+    throw std::runtime_error(
+        fmt::format("pose {} (t = {:.6g} s) is a dead centre: {} the drive does not determine how "
+                    "the mechanism "
+                    "moves on, and no drive force holds it. {}",
+                    i, motion_.times[i], DrivesAt(study_, positions), kPastDeadCentre));
   }
 
+  const LoadStudy& study_;
   const LoadModel& model_;
   const Motion& motion_;
   const LoadStudyOptions& options_;
@@ -126,12 +135,40 @@ std::vector<size_t> JudgedPoses(size_t count) {
   return judged;
 }
 
+/// What depends on the choices that are the user's is not determined.
+void AddRuleDependence(const PreparedStudy& prepared, const Motion& motion,
+                       const std::vector<size_t>& poses, LoadStudyResult* result) {
+  const LoadModel& model = prepared.model;
+  result->drive_certainty.assign(model.drives.size(), Certainty::kCertain);
+  const bool settled_by_choice = model.has_load_friction || model.hand;
+  if (!settled_by_choice || model.rule == ReactionRule::kPaperJoint) return;
+  const RuleDependence dependence = FindRuleDependence(prepared, motion, poses);
+  for (size_t j = 0; j < result->certainty.size(); ++j) {
+    for (int k = 0; k < 6; ++k) {
+      if (dependence.joints[j][k]) result->certainty[j][k] = Certainty::kNotDetermined;
+    }
+  }
+  std::string drives;
+  for (size_t k = 0; k < model.drives.size(); ++k) {
+    if (!dependence.drives[k]) continue;
+    result->drive_certainty[k] = Certainty::kNotDetermined;
+    drives += fmt::format("{}'{}'", drives.empty() ? "" : ", ",
+                          model.tree.mechanism.joints[model.drives[k].joint].name);
+  }
+  if (drives.empty()) return;
+  result->warnings.push_back(fmt::format(
+      "the force of the drive at {} is not determined by statics: friction depends on loads that "
+      "the rule '{}' settles",
+      drives, NameOf(model.rule)));
+}
+
 /// What statics leaves open at any pose it leaves open; singular counts only if it is so
 /// everywhere.
-std::vector<JointCertainty> JudgeStudy(const LoadModel& model, const Motion& motion) {
+std::vector<JointCertainty> JudgeStudy(const LoadModel& model, const Motion& motion,
+                                       const std::vector<size_t>& poses) {
   std::vector<JointCertainty> verdict;
-  for (size_t i : JudgedPoses(motion.size())) {
-    const auto here = JudgeCertainty(model.tree, model.partition, motion.q(i));
+  for (size_t i : poses) {
+    const auto here = JudgeCertainty(model.tree, model.partition, motion.q(i), model.rounding);
     if (verdict.empty()) {
       verdict = here;
       continue;
@@ -147,11 +184,103 @@ std::vector<JointCertainty> JudgeStudy(const LoadModel& model, const Motion& mot
   return verdict;
 }
 
+/// The larger one; what is not a number is, too.
+double Larger(double a, double b) {
+  return std::isnan(a) || (a > b && !std::isnan(b)) ? a : b;
+}
+
+double LargestForce(const LoadStudyResult& result) {
+  double largest = 0;
+  for (const PoseLoads& pose : result.poses) {
+    largest = Larger(pose.hand.force.norm(), largest);
+    for (const JointSample& joint : pose.joints) largest = Larger(joint.force.norm(), largest);
+  }
+  return largest;
+}
+
+/// The errors of the self-checks. Powers are measured by the largest of the study: at a pose where
+/// they all but vanish their balance is that of the rounding of others. So it is where nothing
+/// moves; a length in three years is no motion.
+void CheckBalance(double length, LoadStudyResult* result) {
+  constexpr double kAtRest = 1e-8;  // [1/s]
+  double largest = kAtRest * length * LargestForce(*result);
+  for (const PoseLoads& pose : result->poses) largest = Larger(pose.power_error_scale, largest);
+  for (PoseLoads& pose : result->poses) {
+    pose.power_error = largest == 0 ? 0 : pose.power_error / largest;
+    result->max_closure = Larger(pose.closure, result->max_closure);
+    result->max_power_error = Larger(pose.power_error, result->max_power_error);
+  }
+}
+
+/// Where a motion is beyond the limits of one freedom.
+struct LimitPassed {
+  size_t poses = 0, first = 0, worst = 0;
+  double most = 0;  ///< at the worst pose [m] or [rad]
+};
+
+LimitPassed FindPassed(const LoadStudyResult& result, size_t joint, int freedom, double lower,
+                       double upper) {
+  constexpr double kOnLimit = 1e-9;  // [m, rad]
+  LimitPassed passed;
+  for (size_t i = 0; i < result.poses.size(); ++i) {
+    const double position = result.poses[i].joints[joint].position[freedom];
+    const double beyond = std::max(lower - position, position - upper);
+    if (!(beyond > kOnLimit)) continue;
+    if (passed.poses++ == 0) passed.first = i;
+    if (beyond <= passed.most) continue;
+    passed.most = beyond;
+    passed.worst = i;
+  }
+  return passed;
+}
+
+std::string DescribePassed(const LoadStudy& study, const LoadStudyResult& result, size_t j, int k,
+                           const LimitPassed& passed) {
+  const Joint& joint = study.mechanism.joints[j];
+  const auto text = [&](double value) { return FormatCoordinate(study.units, joint, k, value); };
+  return fmt::format(
+      "the motion leaves the limits {} to {} of joint '{}' at {} of {} poses, from pose {} (t = "
+      "{:.6g} s) on; by {} at most, at pose {}, where it is at {}",
+      text(joint.lower[k]), text(joint.upper[k]), joint.name, passed.poses, result.poses.size(),
+      passed.first, result.poses[passed.first].time, text(passed.most), passed.worst,
+      text(result.poses[passed.worst].joints[j].position[k]));
+}
+
+/// Warns where the motion leaves the limits of a joint, or refuses it.
+void WatchLimits(const LoadStudy& study, LoadStudyResult* result) {
+  for (size_t j = 0; j < study.mechanism.joints.size(); ++j) {
+    const Joint& joint = study.mechanism.joints[j];
+    if (joint.type == JointType::kSpherical) continue;
+    for (int k = 0; k < FreedomsOf(joint.type); ++k) {
+      const LimitPassed passed = FindPassed(*result, j, k, joint.lower[k], joint.upper[k]);
+      if (passed.poses == 0) continue;
+      const std::string message = DescribePassed(study, *result, j, k, passed);
+      if (study.stop_at_limits) throw std::runtime_error(message);
+      result->warnings.push_back(message);
+    }
+  }
+}
+
+/// A load along a freedom without inertia has no answer.
+void RefuseUnresisted(const LoadModel& model, const LoadStudyResult& result) {
+  constexpr double kRounding = 1e-7;
+  const double largest = LargestForce(result) * std::max(1.0, model.tree.length);
+  for (size_t i = 0; i < result.poses.size(); ++i) {
+    const double unresisted = result.poses[i].unresisted;
+    if (unresisted <= kRounding * largest) continue;
+    throw std::runtime_error(fmt::format(
+        "pose {} (t = {:.6g} s): a load of {:.4g} N or N m acts along an idle freedom ({}), and "
+        "nothing resists it: no drive, no inertia. Leave the load out, or give the link inertia "
+        "and a drive",
+        i, result.poses[i].time, unresisted, fmt::join(result.idle, ", ")));
+  }
+}
+
 void Summarise(const LoadModel& model, const Motion& motion, LoadStudyResult* result) {
+  CheckBalance(model.tree.length, result);
+  RefuseUnresisted(model, *result);
   for (size_t i = 0; i < result->poses.size(); ++i) {
     const PoseLoads& pose = result->poses[i];
-    result->max_closure = std::max(result->max_closure, pose.closure);
-    result->max_power_error = std::max(result->max_power_error, pose.power_error);
     if (pose.smallest_pivot < kNearDeadCentre &&
         DistanceFromDeadCentre(model.tree, model.partition, motion.q(i)) < kSingularTolerance) {
       result->singular_poses.push_back(i);
@@ -205,8 +334,7 @@ LoadStudyResult RunLoadStudy(const LoadStudy& study, const LoadStudyOptions& opt
 
   LoadStudyResult result;
   SizePoses(prepared.model, options, motion.size(), &result);
-  ParallelEvaluation(prepared.model, motion, options, &result).Run();
-  result.certainty = JudgeStudy(prepared.model, motion);
+  ParallelEvaluation(study, prepared.model, motion, options, &result).Run();
   result.mobility = prepared.mobility.mobility;
   result.redundant_equations = prepared.mobility.redundant;
   for (const Loop& loop : prepared.model.tree.loops) {
@@ -215,6 +343,11 @@ LoadStudyResult RunLoadStudy(const LoadStudy& study, const LoadStudyOptions& opt
   result.idle = prepared.idle;
   result.norm_length = study.norm_length > 0 ? study.norm_length : prepared.model.tree.length;
   result.warnings = prepared.warnings;
+  result.notes = prepared.notes;
+  const std::vector<size_t> judged = JudgedPoses(motion.size());
+  result.certainty = JudgeStudy(prepared.model, motion, judged);
+  AddRuleDependence(prepared, motion, judged, &result);
+  WatchLimits(study, &result);
   Summarise(prepared.model, motion, &result);
   return result;
 }

@@ -57,6 +57,9 @@ struct LoadStudy {
   double cycle = 0;
   std::vector<ExternalLoad> external;
   ReactionRule rule = ReactionRule::kStiffness;
+  bool stop_at_limits = false;  ///< refuse a motion that leaves the limits of a joint
+  /// Of messages: those of the study's figures.
+  DisplayUnits units;
   /// The length by which `minimum_norm` weighs moments against forces [m]; 0 takes the mechanism's
   /// characteristic length.
   double norm_length = 0;
@@ -110,11 +113,14 @@ struct PoseLoads {
   PoseArray<JointSample> joints;  ///< of each joint of the mechanism
   PoseArray<LinkMotion> links;    ///< empty if LoadStudyOptions::link_motions is off
   double power = 0;               ///< of the drives and the hand [W]
-  double power_error = 0;  ///< power in, less d/dt energy and losses, over the largest of its terms
+  double power_error = 0;  ///< power in, less d/dt energy and losses, over the largest sum of the
+                           ///< terms at any pose of the study
+  double power_error_scale = 0;  ///< the sum of those terms here [W]
   /// sin^2 of the angle by which the drive's hold on the mechanism is short of none; 0 at a dead
   /// centre.
   double smallest_pivot = 1;
-  double closure = 0;  ///< loop error that is left, dimensionless
+  double closure = 0;     ///< loop error that is left, dimensionless
+  double unresisted = 0;  ///< largest force along an idle freedom without inertia [N], [N m]
   /// Load-dependent friction has no equilibrium here: the mechanism locks itself. The joint
   /// wrenches are those of the last iteration.
   bool jammed = false;
@@ -127,8 +133,9 @@ struct LoadStudyResult {
   /// Behind the arrays of `poses`. Copy a pose to keep it for longer than the result.
   std::shared_ptr<PoseMemory> memory;
   PoseArray<PoseLoads> poses;
-  std::vector<JointCertainty> certainty;  ///< per joint; `singular` only if it is so at every pose
-  std::vector<size_t> singular_poses;     ///< indices of poses at or very near a dead centre
+  std::vector<JointCertainty> certainty;   ///< per joint; `singular` only if it is so at every pose
+  std::vector<Certainty> drive_certainty;  ///< per drive: determined, or not (kNotDetermined)
+  std::vector<size_t> singular_poses;      ///< indices of poses at or very near a dead centre
   int mobility = 0;
   int redundant_equations = 0;
   std::vector<std::string> cut_joints;
@@ -137,11 +144,14 @@ struct LoadStudyResult {
   double max_closure = 0;
   double max_power_error = 0;
   std::vector<std::string> warnings;
+  std::vector<std::string> notes;  ///< what the assembly did, as AssembledMechanism::Notes
   std::string BriefReport() const;
 };
 
 /// @throws std::invalid_argument for a study that contradicts itself, std::runtime_error with the
-///         pose and its time where the motion cannot be followed (a dead centre, out of reach).
+///         pose and its time where the motion cannot be followed (a dead centre, out of reach),
+///         where it leaves limits at which it is to stop, or where a load acts on a freedom that
+///         nothing resists.
 LoadStudyResult RunLoadStudy(const LoadStudy& study, const LoadStudyOptions& options = {});
 
 }  // namespace vmech

@@ -70,7 +70,7 @@ void CompleteVelocities(const LoadModel& model, LoadWorkspace<T>* ws) {
 template <typename T>
 void MoveLinks(const LoadModel& model, LoadWorkspace<T>* ws) {
   if constexpr (kSinglePose<T>) {
-    if (!model.partition.idle.empty()) RemoveIdleMomentum(model, ws);
+    if (model.idle > 0) RemoveIdleMomentum(model, ws);
   }
   ForwardVelocities(model.tree, ws->v.data(), &ws->tree);
 }
@@ -227,7 +227,7 @@ void EquilibriumPass(const LoadModel& model, LoadWorkspace<T>* ws) {
       SpreadPassive(model, ws);
       LoadTree(model, ws);
     }
-    if (!model.partition.idle.empty()) SettleIdleFreedoms(model, ws);
+    if (model.idle > 0) SettleIdleFreedoms(model, ws);
     if (model.hand && model.rule != ReactionRule::kPaperJoint) ApplyHandWrench(model, ws);
     if (model.rule == ReactionRule::kPaperJoint) SolvePaperJoint(model, ws);
   }
@@ -305,7 +305,7 @@ LoadWorkspace<T>::LoadWorkspace(const LoadModel& model)
 }
 
 bool RunsInPackets(const LoadModel& model) {
-  return !model.hand && model.partition.idle.empty() && !model.has_load_friction &&
+  return !model.hand && model.idle == 0 && !model.has_load_friction &&
          model.rule != ReactionRule::kPaperJoint;
 }
 
@@ -321,7 +321,7 @@ bool EvaluatePoseLoads(const LoadModel& model, const Motion& motion, size_t pose
   if (!AllLanes(ws->dependents.smallest_pivot() > T(0))) return false;
   ws->closure = LargestLoopError(model.tree, ws->tree);
   if constexpr (kSinglePose<T>) {
-    if (ws->motions.size() > 0) FreeMotions(ws->tree, &ws->dependents, &ws->motions);
+    if (ws->motions.size() > 0) FindMotions(model, ws);
     if (model.has_dry_friction) FindCreep(model, motion, pose, ws);
   }
   GatherDrives(model, motion, pose, ws);
@@ -360,10 +360,12 @@ void StorePoseLoads(const LoadModel& model, const Motion& motion, size_t pose,
     }
     out.links.resize(link_motions ? model.tree.mechanism.links.size() : 0);
     out.power = Lane(ws.power, lane);
-    out.power_error = Lane(ws.power_error, lane);
+    out.power_error = Lane(ws.power_gap, lane);
+    out.power_error_scale = Lane(ws.power_size, lane);
     out.smallest_pivot = Lane(ws.dependents.smallest_pivot(), lane);
     out.closure = Lane(ws.closure, lane);
     out.jammed = ws.jammed;
+    out.unresisted = ws.unresisted;
     out.locking_joint = ws.locking_joint;
     out.held_by_friction = ws.held_by_friction;
   }

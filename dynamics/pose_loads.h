@@ -22,6 +22,13 @@ struct LoadModel {
   std::optional<HandDrive> hand;
   Vector6d hand_stiffness = Vector6d::Ones();  ///< K of the hand, diagonal
   ReactionRule rule = ReactionRule::kStiffness;
+  double rounding = 0;  ///< of the mechanism's figures, as AssembledMechanism::correction
+  /// Freedoms that neither drives nor the hand determine and that no load depends on, such as the
+  /// spin of a rod between two spherical joints.
+  int idle = 0;
+  /// Moments of inertia up to here are rounding [kg m^2]: what they resist does not move.
+  double no_inertia = 0;
+  bool idle_is_held = false;  ///< idle freedoms do not move at all
   bool has_passive = false;
   bool has_dry_friction = false;   ///< constant, or in proportion to loads
   bool has_load_friction = false;  ///< in proportion to loads
@@ -84,7 +91,8 @@ struct LoadWorkspace {
   VectorX open;      ///< what is left for drives and multipliers
   VectorX mu;        ///< multipliers of the cut joints
   MatrixXd motions;  ///< [nv, independent]: free motions, where the hand or idle freedoms need them
-  MatrixXd creep;    ///< [nv, standing drives]: the motion as each of them begins to move
+  MatrixXd idle_motions;  ///< [nv, idle]: those of them that are idle
+  MatrixXd creep;         ///< [nv, standing drives]: the motion as each of them begins to move
   std::vector<Vector3d> creep_rates;  ///< [standing drives * joints]
   std::vector<RestingContact> resting;
   VectorXd holding;  ///< [standing drives] y of resting_friction.h
@@ -94,8 +102,9 @@ struct LoadWorkspace {
   // What comes out, beside `tree`.
   std::vector<JointLoad<T>> loads;  ///< per joint
   std::vector<T> drive_forces;
-  Wrench<T> hand;  ///< w_d at Go, world axes
-  T power, power_error, closure;
+  Wrench<T> hand;         ///< w_d at Go, world axes
+  double unresisted = 0;  ///< largest force along an idle freedom without inertia [N], [N m]
+  T power, power_gap, power_size, closure;  ///< power_gap: of the balance; power_size: its terms
   bool jammed = false;
   int locking_joint = -1;
   bool held_by_friction = false;

@@ -87,7 +87,8 @@ void EvaluatePower(const LoadModel& model, LoadWorkspace<T>* ws) {
   AddExternalPower(model, *ws, &balance);
   if (model.has_passive) AddPassivePower(model, *ws, &balance);
   SubtractEnergyRates(model, *ws, &balance);
-  ws->power_error = Select(balance.size > T(0), abs(balance.sum) / balance.size, T(0));
+  ws->power_gap = abs(balance.sum);
+  ws->power_size = balance.size;
 }
 
 template void EvaluatePower<double>(const LoadModel&, LoadWorkspace<double>*);

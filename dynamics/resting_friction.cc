@@ -5,6 +5,7 @@
 
 #include "vmech/dynamics/passive.h"
 #include "vmech/kinematics/linear_algebra.h"
+#include "vmech/kinematics/packet.h"
 
 namespace vmech {
 namespace {

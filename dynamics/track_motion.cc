@@ -86,7 +86,7 @@ class Tracker {
 
   /// Four poses at once, if their predictions are good enough; otherwise nothing is done.
   bool AdvancePacket(const double* times) {
-    if (study_.hand || !model_.partition.idle.empty() || history_ < 3) return false;
+    if (study_.hand || model_.idle > 0 || history_ < 3) return false;
     const size_t first = motion_.size();
     for (int lane = 0; lane < Packet::kLanes; ++lane) RecordDrives(times[lane]);
     PredictPacket(first);
@@ -265,11 +265,13 @@ class Tracker {
     q_ = summary.x;
     EvaluatePose(tree_, q_, &ws_);
     if (!summary.converged()) Lost(time, pose);
+    SettleIdle();
     UnwrapCutPositions();
   }
 
   void SettleIdle() {
-    if (model_.partition.idle.empty()) return;
+    if (model_.idle == 0) return;
+    history_ = 0;  // idle freedoms do not go on as they were
     idle_.Settle(tolerance_, &dependents_, &ws_, &q_);
     idle_.Remember(ws_);
     UnwrapCutPositions();
@@ -330,17 +332,10 @@ class Tracker {
   }
 
   [[noreturn]] void Lost(double time, size_t pose) const {
-    const double error = LargestLoopError(tree_, ws_);
-    std::string where;
-    for (size_t k = 0; k < study_.drives.size(); ++k) {
-      where += fmt::format(", '{}' at {:.6g}", tree_.mechanism.joints[study_.drives[k].joint].name,
-                           position_[k]);
-    }
     throw std::runtime_error(fmt::format(
-        "the motion cannot be followed to pose {} (t = {:.6g} s): the mechanism stops{}, with a "
-        "loop error of {:.3g}. It is at a dead centre or at the edge of its reach; shorten the "
-        "motion, or drive another joint",
-        pose, time, where, error));
+        "the motion cannot be followed to pose {} (t = {:.6g} s): {} the mechanism is at a dead "
+        "centre or at the edge of its reach, and its loops stay open by {:.3g}. {}",
+        pose, time, DrivesAt(study_, position_), LargestLoopError(tree_, ws_), kPastDeadCentre));
   }
 
   const LoadStudy& study_;
@@ -371,7 +366,7 @@ class Tracker {
 
 Motion TrackMotion(const LoadStudy& study, const PreparedStudy& prepared,
                    double closure_tolerance) {
-  Tracker tracker(study, prepared, closure_tolerance);
+  Tracker tracker(study, prepared, std::max(closure_tolerance, prepared.closure_tolerance));
   tracker.Approach();
   const std::vector<double>& times = study.times;
   for (size_t i = 0; i < times.size();) {

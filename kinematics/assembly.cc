@@ -4,20 +4,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "vmech/kinematics/closure.h"
 #include "vmech/kinematics/linear_algebra.h"
 #include "vmech/kinematics/loops.h"
+#include "vmech/kinematics/mobility.h"
+#include "vmech/solvers/starts.h"
 
 namespace vmech {
 namespace {
 
+/// Loops that stay open by no more may be closed but for the rounding of their figures.
+constexpr double kRounding = 1e-2;
+
 /// The penalty iteration on the coordinates that may move.
 class PenaltyIteration {
  public:
-  PenaltyIteration(const KinematicTree& tree, const AssemblyOptions& options, const VectorXd& q)
-      : tree_(tree), options_(options), ws_(tree), q_given_(q), q_(q) {
+  PenaltyIteration(const KinematicTree& tree, const AssemblyOptions& options,
+                   const VectorXd& q_given, const VectorXd& q)
+      : tree_(tree), options_(options), ws_(tree), q_given_(q_given), q_(q) {
     free_ = VectorXd::Ones(tree.nv);
     for (int v : options.fixed) free_[v] = 0;
     coordinate_weight_ = VectorXd::Ones(tree.nv);
@@ -34,6 +41,11 @@ class PenaltyIteration {
   double error() const { return error_; }
   const VectorXd& q() const { return q_; }
   const TreeWorkspace<double>& ws() const { return ws_; }
+  /// From the given coordinates, squared and dimensionless.
+  double SquaredDeparture() const {
+    const VectorXd d = Departure(q_);
+    return d.dot(coordinate_weight_.cwiseProduct(d));
+  }
 
   /// [1; lambda C] dq = [q_given - q; lambda (e2 + s)], damped until the merit falls (paper eq. 8).
   /// False when no step makes progress any more.
@@ -106,9 +118,7 @@ class PenaltyIteration {
   }
 
   double Merit() const {
-    const VectorXd d = Departure(q_);
-    return d.dot(coordinate_weight_.cwiseProduct(d)) +
-           options_.penalty * (ScaledErrors() + shift_).squaredNorm() +
+    return SquaredDeparture() + options_.penalty * (ScaledErrors() + shift_).squaredNorm() +
            (error_ >= 2 ? options_.penalty : 0);
   }
 
@@ -153,16 +163,104 @@ void DescribeError(const KinematicTree& tree, const TreeWorkspace<double>& ws,
 }
 
 std::string FailureMessage(const KinematicTree& tree, const AssemblySummary& s) {
+  const DisplayUnits& units = tree.mechanism.units;
   return fmt::format(
-      "the loop through joint '{}' cannot be closed near the start values: after {} iterations its "
-      "anchors are {:.4g} m and {:.4g} rad apart (at the start values the largest error was {:.3g} "
-      "of the characteristic length {:.4g} m). Check the anchors and lengths of its links, or give "
-      "start values nearer to an assembled pose",
-      tree.mechanism.joints[s.worst_joint].name, s.iterations, s.worst_distance, s.worst_angle,
-      s.start_error, tree.length);
+      "the loop through joint '{}' cannot be closed near the start values: from {} after {} "
+      "iterations its anchors are {:.4g} {} and {:.4g} {} apart (at the start values the largest "
+      "error was {:.3g} of the characteristic length {:.4g} {}). Check the anchors and lengths of "
+      "its links, or give start values nearer to an assembled pose",
+      tree.mechanism.joints[s.worst_joint].name,
+      s.starts == 1 ? std::string("these") : fmt::format("{} starts", s.starts), s.iterations,
+      s.worst_distance / units.metres, units.length, s.worst_angle / units.radians, units.angle,
+      s.start_error, tree.length / units.metres, units.length);
+}
+
+/// Runs the iteration to its end, closed or not; returns its steps.
+int CloseLoops(const AssemblyOptions& options, PenaltyIteration* iteration) {
+  constexpr double kNearlyClosed = 1e-5;  // from here Newton converges quadratically
+  constexpr int kClosingSteps = 8;
+  int steps = 0;
+  const double nearly = std::max(kNearlyClosed, options.tolerance);
+  while (iteration->error() > nearly && steps < options.max_iterations) {
+    ++steps;
+    if (!iteration->Step()) break;
+  }
+  for (int i = 0;
+       i < kClosingSteps && iteration->error() > options.tolerance && iteration->error() <= nearly;
+       ++i) {
+    ++steps;
+    iteration->CloseStep();
+  }
+  return steps;
+}
+
+/// q moved by `way`, dimensionless; what is fixed stays.
+VectorXd Displaced(const KinematicTree& tree, const AssemblyOptions& options, VectorXd q,
+                   VectorXd way) {
+  for (const int v : options.fixed) way[v] = 0;
+  Integrate(tree, VelocityScale(tree).cwiseProduct(way), &q);
+  return q;
+}
+
+/// Poses beside q along the kernel of the loops' Jacobian, to both sides: what is to first order
+/// without effect there may lead away.
+std::vector<VectorXd> StartsBeside(const KinematicTree& tree, const AssemblyOptions& options,
+                                   const VectorXd& q) {
+  constexpr double kKick = 0.2;  // [rad, characteristic lengths]
+  constexpr double kKernel = 1e-4;
+  constexpr Eigen::Index kDirections = 12;
+  const MatrixXd N = FindNullSpace(DimensionlessLoopJacobian(tree, q), kKernel).basis;
+  std::vector<VectorXd> starts;
+  for (Eigen::Index k = 0; k < std::min(N.cols(), kDirections); ++k) {
+    for (const double kick : {kKick, -kKick}) {
+      starts.push_back(
+          Displaced(tree, options, q, kick / N.col(k).cwiseAbs().maxCoeff() * N.col(k)));
+    }
+  }
+  return starts;
+}
+
+/// The k-th of poses that fill the surroundings of q evenly, out to half a turn and to a few
+/// characteristic lengths.
+VectorXd StartAround(const KinematicTree& tree, const AssemblyOptions& options, const VectorXd& q,
+                     int k) {
+  constexpr double kFarthest = 3.141592653589793;
+  const double radius = kFarthest * std::min(1.0, (k + 1.0) / (0.5 * options.other_starts));
+  return Displaced(tree, options, q, radius * (2 * EvenPoint(tree.nv, k).array() - 1).matrix());
+}
+
+/// Looks for the closed pose nearest to q_given from other starts.
+void TryOtherStarts(const KinematicTree& tree, const AssemblyOptions& options,
+                    const VectorXd& q_given, std::optional<PenaltyIteration>* best,
+                    AssemblySummary* summary) {
+  constexpr int kEnough = 4;            // closed poses to choose from
+  constexpr double kNearer = 1 - 1e-6;  // mirror images are alike: the first is taken
+  const std::vector<VectorXd> beside = StartsBeside(tree, options, (*best)->q());
+  int closed = 0;
+  for (int k = 0; k < options.other_starts && closed < kEnough; ++k) {
+    const int around = k - static_cast<int>(beside.size());
+    if (around == 0 && closed > 0) return;
+    PenaltyIteration iteration(
+        tree, options, q_given,
+        around < 0 ? beside[k] : StartAround(tree, options, q_given, around));
+    summary->iterations += CloseLoops(options, &iteration);
+    ++summary->starts;
+    const bool closes = iteration.error() <= kRounding;
+    const bool better = closed > 0
+                            ? iteration.SquaredDeparture() < kNearer * (*best)->SquaredDeparture()
+                            : iteration.error() < (*best)->error();
+    if ((closes || closed == 0) && better) best->emplace(iteration);
+    closed += closes;
+  }
 }
 
 }  // namespace
+
+AssemblyOptions AssemblyOptions::Nearby() {
+  AssemblyOptions options;
+  options.other_starts = 0;
+  return options;
+}
 
 void AssemblyOptions::Validate() const {
   auto require = [](bool ok, const char* name, double value, const char* range) {
@@ -174,34 +272,26 @@ void AssemblyOptions::Validate() const {
   require(tolerance > 0 && tolerance <= 1e-3, "tolerance", tolerance, "(0, 1e-3]");
   require(max_iterations >= 1 && max_iterations <= 10000, "max_iterations", max_iterations,
           "1..10000");
+  require(other_starts >= 0 && other_starts <= 1000, "other_starts", other_starts, "0..1000");
   require(penalty >= 1 && penalty <= 1e8, "penalty", penalty, "[1, 1e8]");
 }
 
 AssemblySummary Assemble(const KinematicTree& tree, const AssemblyOptions& options, VectorXd* q) {
-  constexpr double kNearlyClosed = 1e-5;  // from here Newton converges quadratically
-  constexpr int kClosingSteps = 8;
   options.Validate();
   AssemblySummary summary;
   if (tree.loops.empty()) {
     summary.closed = true;
     return summary;
   }
-  PenaltyIteration iteration(tree, options, *q);
-  summary.start_error = iteration.error();
-  while (iteration.error() > kNearlyClosed && summary.iterations < options.max_iterations) {
-    ++summary.iterations;
-    if (!iteration.Step()) break;
-  }
-  for (int i = 0; i < kClosingSteps && iteration.error() > options.tolerance &&
-                  iteration.error() <= kNearlyClosed;
-       ++i) {
-    ++summary.iterations;
-    iteration.CloseStep();
-  }
-  *q = iteration.q();
-  summary.error = iteration.error();
+  std::optional<PenaltyIteration> best;
+  best.emplace(tree, options, *q, *q);
+  summary.start_error = best->error();
+  summary.iterations = CloseLoops(options, &*best);
+  if (best->error() > kRounding) TryOtherStarts(tree, options, *q, &best, &summary);
+  *q = best->q();
+  summary.error = best->error();
   summary.closed = summary.error <= options.tolerance;
-  DescribeError(tree, iteration.ws(), &summary);
+  DescribeError(tree, best->ws(), &summary);
   if (!summary.closed) summary.message = FailureMessage(tree, summary);
   return summary;
 }

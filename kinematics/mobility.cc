@@ -17,15 +17,6 @@ namespace {
 
 constexpr double kMoves = 1e-6;  // share of a unit motion that counts as moving
 
-/// Characteristic lengths or radians per unit of each velocity.
-VectorXd ColumnScale(const KinematicTree& tree) {
-  VectorXd scale = VectorXd::Ones(tree.nv);
-  for (const TreeNode& node : tree.nodes) {
-    if (node.motion == NodeMotion::kPrismatic) scale[node.v] = tree.length;
-  }
-  return scale;
-}
-
 /// Closed poses a little way along every free motion of q, to both sides, and along their sum.
 std::vector<VectorXd> Neighbours(const KinematicTree& tree, const VectorXd& q,
                                  const MatrixXd& motions) {
@@ -34,7 +25,7 @@ std::vector<VectorXd> Neighbours(const KinematicTree& tree, const VectorXd& q,
   auto add = [&](const VectorXd& direction) {
     VectorXd near = q;
     Integrate(tree, kStep * direction, &near);
-    if (Assemble(tree, {}, &near).closed) neighbours.push_back(near);
+    if (Assemble(tree, AssemblyOptions::Nearby(), &near).closed) neighbours.push_back(near);
   };
   for (Eigen::Index k = 0; k < motions.cols(); ++k) {
     add(motions.col(k));
@@ -74,7 +65,7 @@ void AddMovingJoints(const KinematicTree& tree, const VectorXd& q, const MatrixX
 
 /// Free motions at q as velocities [nv, mobility].
 MatrixXd FreeMotions(const KinematicTree& tree, const NullSpace& space) {
-  return ColumnScale(tree).asDiagonal() * space.basis;
+  return VelocityScale(tree).asDiagonal() * space.basis;
 }
 
 NullSpace SpaceAt(const KinematicTree& tree, const VectorXd& q) {
@@ -96,11 +87,19 @@ MatrixXd Columns(const MatrixXd& A, const std::vector<int>& columns) {
 
 }  // namespace
 
+VectorXd VelocityScale(const KinematicTree& tree) {
+  VectorXd scale = VectorXd::Ones(tree.nv);
+  for (const TreeNode& node : tree.nodes) {
+    if (node.motion == NodeMotion::kPrismatic) scale[node.v] = tree.length;
+  }
+  return scale;
+}
+
 MatrixXd DimensionlessLoopJacobian(const KinematicTree& tree, const VectorXd& q) {
   TreeWorkspace<double> ws(tree);
   EvaluatePose(tree, q, &ws);
   return LoopRowScale(tree).asDiagonal() * DenseLoopJacobian(tree, ws) *
-         ColumnScale(tree).asDiagonal();
+         VelocityScale(tree).asDiagonal();
 }
 
 Mobility AnalyseMobility(const KinematicTree& tree, const VectorXd& q) {

@@ -33,6 +33,9 @@ CoordinatePartition PartitionForDrives(const KinematicTree& tree, const VectorXd
 /// Independent velocities for a mechanism that nothing prescribes yet, best conditioned at q.
 CoordinatePartition PartitionAtPose(const KinematicTree& tree, const VectorXd& q);
 
+/// Characteristic lengths or radians per unit of each velocity [nv].
+VectorXd VelocityScale(const KinematicTree& tree);
+
 /// The scaled loop Jacobian at q: rows and columns of lengths measured in characteristic lengths.
 MatrixXd DimensionlessLoopJacobian(const KinematicTree& tree, const VectorXd& q);
 

@@ -73,7 +73,10 @@ std::vector<int> JointsByPriority(const Mechanism& mechanism, const SpanningTree
       options.cut.empty() ? mechanism.preferred_cuts : options.cut;
   auto priority = [&](int j) {
     const Joint& joint = mechanism.joints[j];
-    const int choice = Contains(options.keep, j) ? -1 : Contains(wanted_cuts, j) ? 1 : 0;
+    const int choice = Contains(options.keep, j)     ? -2
+                       : Contains(options.prefer, j) ? -1
+                       : Contains(wanted_cuts, j)    ? 1
+                                                     : 0;
     return std::make_tuple(choice, FreedomsOf(joint.type),
                            distance[joint.first.link] + distance[joint.second.link], j);
   };

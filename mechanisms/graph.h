@@ -23,6 +23,8 @@ struct SpanningTreeOptions {
   std::vector<int> keep;
   /// Joints to cut if the graph allows it, before any rule is asked; overrides the mechanism's own.
   std::vector<int> cut;
+  /// Joints that stay whole where the kept ones and the other preferred ones let them.
+  std::vector<int> prefer = {};
 };
 
 /// Cuts where it costs least: the joint with the most freedoms; on a tie, the one farthest from the

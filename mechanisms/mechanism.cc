@@ -1,7 +1,11 @@
 #include "vmech/mechanisms/mechanism.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <stdexcept>
+
+#include "vmech/mechanisms/freedoms.h"
 
 namespace vmech {
 namespace {
@@ -83,6 +87,13 @@ double CharacteristicLength(const Mechanism& mechanism) {
     }
   }
   return sum > 0 ? sum / count : 1.0;
+}
+
+std::string FormatCoordinate(const DisplayUnits& units, const Joint& joint, int freedom,
+                             double value) {
+  return FreedomsOfType(joint.type).rotates[freedom]
+             ? fmt::format("{:.6g} {}", value / units.radians, units.angle)
+             : fmt::format("{:.6g} {}", value / units.metres, units.length);
 }
 
 std::vector<double> ZeroCoordinates(JointType type) {

@@ -90,6 +90,7 @@ struct Joint {
   AnchorId second;                   ///< M
   double pitch = 0;                  ///< kScrew: travel per radian [m/rad]
   std::vector<double> start;         ///< coordinates at the start; CoordinatesOf(type) values
+  bool start_given = false;          ///< the file states the start; else it is free to be anywhere
   std::vector<double> lower, upper;  ///< limits per freedom; infinite where there is none
   std::vector<Passive> passive;      ///< per freedom
   LoadFriction load_friction;
@@ -108,18 +109,30 @@ struct Grasp {
   GraspKind kind = GraspKind::kRigid;
 };
 
+/// The units in which a file speaks, for what is said about it; the mechanism itself is in SI.
+struct DisplayUnits {
+  std::string length = "m", angle = "rad";  ///< symbols
+  double metres = 1, radians = 1;           ///< in one unit
+};
+
 /// The immutable description of a mechanism. Names are unique within their list.
 struct Mechanism {
   std::string name;
+  DisplayUnits units;
   Vector3d gravity_W = Vector3d::Zero();  ///< [m/s^2], world axes = drawing axes of the ground link
   int ground = 0;                         ///< index of the ground link
   std::vector<Link> links;
   std::vector<Joint> joints;
   std::vector<Grasp> grasps;
   std::vector<int> preferred_cuts;  ///< joints that the author wants to be cut
+  /// How far anchors may be off, root mean square, by the rounding of their figures, for loops to
+  /// count as closed [characteristic lengths, rad], in [0, kWidestTolerance].
+  double tolerance = 1e-4;
 
   const Anchor& anchor(AnchorId id) const { return links[id.link].anchors[id.anchor]; }
 };
+
+inline constexpr double kWidestTolerance = 0.01;  ///< of Mechanism::tolerance
 
 /// Index of the named item; -1 if there is none.
 int FindLink(const Mechanism& mechanism, std::string_view name);
@@ -133,6 +146,10 @@ Matrix3d AxesFromZX(const Vector3d& z, const Vector3d& x);
 /// A length that is typical of the mechanism: the mean distance of a moving link's anchors and
 /// centre of gravity from each other, or 1 m if all coincide. Used to weigh metres against radians.
 double CharacteristicLength(const Mechanism& mechanism);
+
+/// A coordinate of a joint as text, as in "43.2 deg".
+std::string FormatCoordinate(const DisplayUnits& units, const Joint& joint, int freedom,
+                             double value);
 
 /// A joint's default start: all zero (the identity for a spherical joint).
 std::vector<double> ZeroCoordinates(JointType type);

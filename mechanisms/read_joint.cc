@@ -54,6 +54,7 @@ std::vector<double> ReadSphericalStart(const Node& node, const Units& units) {
 
 void ReadStart(const Node& node, const Units& units, Joint* joint) {
   if (!node) return;
+  joint->start_given = true;
   if (joint->type == JointType::kSpherical) {
     joint->start = ReadSphericalStart(node, units);
     return;

@@ -71,6 +71,19 @@ void ReadCuts(const Node& node, Mechanism* mechanism) {
   }
 }
 
+void ReadTolerance(const Node& node, Mechanism* mechanism) {
+  if (!node) return;
+  const double tolerance = node.Number();
+  if (tolerance >= 0 && tolerance <= kWidestTolerance) {
+    mechanism->tolerance = tolerance;
+  } else {
+    node.Error(
+        fmt::format("must be from 0 to {}: what anchors may be off for the loops to count "
+                    "as closed, in radians and in parts of the mechanism's length",
+                    kWidestTolerance));
+  }
+}
+
 /// How the links hang together: for each the links beyond its joints.
 std::vector<std::vector<int>> Neighbours(const Mechanism& mechanism) {
   std::vector<std::vector<int>> neighbours(mechanism.links.size());
@@ -140,11 +153,13 @@ Mechanism ReadDocument(Document* document) {
   Mechanism mechanism;
   const Node root = document->root();
   if (root.CheckKeys({"vmech", "gravity", "ground", "links", "joints"},
-                     {"name", "description", "units", "grasps", "cuts"})) {
+                     {"name", "description", "units", "grasps", "cuts", "tolerance"})) {
     CheckVersion(root["vmech"]);
     mechanism.name = root["name"].Text(std::filesystem::path(document->name()).stem().string());
     root["description"].Text();
     const Units units = ReadUnits(root["units"]);
+    mechanism.units = DisplayUnitsOf(root["units"], units);
+    ReadTolerance(root["tolerance"], &mechanism);
     mechanism.gravity_W = units.acceleration * root["gravity"].Vector3();
     ReadParts(root, units, &mechanism);
   }

@@ -144,4 +144,8 @@ Units ReadUnits(const Node& node) {
   return units;
 }
 
+DisplayUnits DisplayUnitsOf(const Node& node, const Units& units) {
+  return {node["length"].Text("m"), node["angle"].Text("rad"), units.length, units.angle};
+}
+
 }  // namespace vmech

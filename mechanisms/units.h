@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/mechanism.h"
 
 namespace vmech {
 
@@ -33,5 +34,8 @@ struct Units {
 /// A unit is a product of symbols with powers and at most one '/', as in "kg mm^2" or "N m/deg":
 ///   m km cm mm um in ft, rad mrad deg rev, kg g mg t lb, s ms min h, N kN mN lbf, rpm.
 Units ReadUnits(const Node& node);
+
+/// The length and the angle of the same block, with their symbols.
+DisplayUnits DisplayUnitsOf(const Node& node, const Units& units);
 
 }  // namespace vmech

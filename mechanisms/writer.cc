@@ -197,7 +197,7 @@ FlowMap JointMap(const Mechanism& mechanism, const Joint& joint, const Units& un
     map.Add("pitch", Decimal(joint.pitch, per_turn,
                              [&](double pitch) { return units.length * pitch / kTurn; }));
   }
-  if (joint.start != ZeroCoordinates(joint.type)) {
+  if (joint.start_given || joint.start != ZeroCoordinates(joint.type)) {
     map.Add("start", joint.type == JointType::kSpherical
                          ? List(joint.start, 1)
                          : PerFreedom(joint.start, joint.type, units.length, units.angle));
@@ -253,6 +253,9 @@ std::string WriteMechanism(const Mechanism& mechanism, const WriterOptions& opti
     grasps.emplace_back(grasp.name, GraspMap(mechanism, grasp, units));
   }
   if (!grasps.empty()) text += "grasps:\n" + AlignedLines(grasps, 2);
+  if (mechanism.tolerance != Mechanism().tolerance) {
+    text += fmt::format("tolerance: {}\n", Decimal(mechanism.tolerance, 1));
+  }
   if (mechanism.preferred_cuts.empty()) return text;
   std::vector<std::string> cuts;
   for (const int joint : mechanism.preferred_cuts) {

@@ -13,15 +13,6 @@ constexpr double kDamping = 1e-6;
 constexpr double kMaxStep = 0.5;     // [unit of the tangent], to stay in the basin of the point
 constexpr double kTolerance = 1e-6;  // of the gradient: it is a start, no solution
 
-// Steps of an additive sequence in n dimensions: the powers of 1/g, g^(n+1) = g + 1.
-VectorXd SequenceSteps(int n) {
-  double g = 2;
-  for (int i = 0; i < 50; ++i) g = std::pow(1 + g, 1.0 / (n + 1));
-  VectorXd steps(n);
-  for (int i = 0; i < n; ++i) steps[i] = std::pow(g, -(i + 1));
-  return steps;
-}
-
 /// The box of tangents about x0 that is searched.
 struct Box {
   VectorXd lower, upper;
@@ -39,10 +30,8 @@ struct Box {
     }
   }
 
-  VectorXd Point(const VectorXd& steps, int k) const {
-    const VectorXd turns = (k * steps).array() + 0.5;
-    const VectorXd share = turns - turns.array().floor().matrix();
-    return lower + share.cwiseProduct(upper - lower);
+  VectorXd Point(int k) const {
+    return lower + EvenPoint(static_cast<int>(lower.size()), k).cwiseProduct(upper - lower);
   }
 };
 
@@ -63,6 +52,17 @@ bool IsNew(const std::vector<VectorXd>& starts, const VectorXd& x, double separa
 
 }  // namespace
 
+VectorXd EvenPoint(int n, int k) {
+  double g = 2;
+  for (int i = 0; i < 50; ++i) g = std::pow(1 + g, 1.0 / (n + 1));
+  VectorXd point(n);
+  for (int i = 0; i < n; ++i) {
+    const double turns = k * std::pow(g, -(i + 1)) + 0.5;
+    point[i] = turns - std::floor(turns);
+  }
+  return point;
+}
+
 void StartsOptions::Validate() const {
   CheckRange("StartsOptions", "samples", samples, 1, 1e7);
   CheckRange("StartsOptions", "kept", kept, 1, 1e6);
@@ -76,13 +76,12 @@ std::vector<VectorXd> FindStarts(ConstrainedLeastSquares& problem, const VectorX
                                  const StartsOptions& options) {
   options.Validate();
   const Box box(problem, x0, options.radius);
-  const VectorXd sequence = SequenceSteps(problem.sizes().tangents);
   const VectorXd no_multipliers = VectorXd::Zero(problem.sizes().constraints);
   WeightedStep step(problem);
   std::vector<Candidate> candidates;
   for (int k = 0; k < options.samples; ++k) {
     VectorXd x = x0;
-    if (k > 0) problem.Plus(x0, box.Point(sequence, k), &x);
+    if (k > 0) problem.Plus(x0, box.Point(k), &x);
     // However the descent ends, x is the best point that it has seen.
     static_cast<void>(step.Minimize(problem, options.weight, no_multipliers, kDamping, kMaxStep,
                                     kTolerance, options.steps, &x));

@@ -24,10 +24,13 @@ struct StartsOptions {
   void Validate() const;
 };
 
+/// The k-th point of a sequence that fills the unit cube [0, 1)^n evenly, however many of it are
+/// taken: multiples of the powers of 1/g, g^(n+1) = g + 1 [Roberts 2018].
+VectorXd EvenPoint(int n, int k);
+
 /// Starts for any back end, the best first: points that fill the bounds evenly (x0 the first of
 /// them), brought down 1/2 |r|^2 + lambda^2/2 |c|^2 by a few steps, without those that meet. At
-/// least one. The same every time: the points are the sequence that the powers of the root of
-/// x^(n+1) = x + 1 generate, which leaves no holes however many are taken [Roberts 2018].
+/// least one. The same every time: the points are those of EvenPoint.
 ///
 /// The global methods of NLopt (DIRECT, CRS, ISRES, MLSL) return one point; who looks for every
 /// assembly mode, or distrusts a start, needs one in each basin, at the price of MLSL's first

@@ -59,14 +59,15 @@ std::string StudyFileText(const ImportedFile& imported, const ImportArguments& a
 
 void Print(const ImportedFile& imported, const MechanismCheck& check, const Outputs& outputs) {
   fmt::print("{}", imported.report);
-  if (!check.assembly.closed) {
-    fmt::print("\nNOT ASSEMBLED: {}\n", check.assembly.message);
+  if (!check.closed()) {
+    fmt::print("\nNOT ASSEMBLED: {}\n", check.assembled.summary.message);
   } else {
     if (!check.tree.loops.empty()) {
       fmt::print("loops       {}, which close from {:.2g} of the length {:.4g} m\n",
-                 check.tree.loops.size(), check.assembly.start_error, check.tree.length);
+                 check.tree.loops.size(), check.assembled.summary.start_error, check.tree.length);
     }
     fmt::print("mobility    {}\n", check.mobility.mobility);
+    for (const std::string& note : check.assembled.Notes()) fmt::print("note        {}\n", note);
   }
   fmt::print("written to {}\n", outputs.names());
 }
@@ -92,7 +93,7 @@ int RunImport(ImportArguments arguments) {
   }
   outputs.Commit();
   if (!arguments.quiet) Print(imported, check, outputs);
-  return check.assembly.closed ? kSuccess : kNoSolution;
+  return check.closed() ? kSuccess : kNoSolution;
 }
 
 }  // namespace vmech

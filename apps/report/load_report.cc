@@ -167,6 +167,11 @@ Markup Header(const Report& report, const Cycle& cycle) {
         html::ListOrParagraph({report.result.warnings.begin(), report.result.warnings.end()}),
         html::Tone::kWarning);
   }
+  if (!report.result.notes.empty()) {
+    header += html::Notice(
+        html::ListOrParagraph({report.result.notes.begin(), report.result.notes.end()}),
+        html::Tone::kNeutral);
+  }
   return header;
 }
 
