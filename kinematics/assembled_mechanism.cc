@@ -120,9 +120,8 @@ std::string BeyondTolerance(const Mechanism& m, const Reconciliation& found,
   return fmt::format(
       "the loops close only if anchors are moved by {:.2g} (root mean square, in rad and in parts "
       "of the mechanism's length), most at joint '{}': {}. More than the tolerance of {:.2g} is "
-      "not taken "
-      "for rounding: correct the figures, or allow it by `tolerance` in the mechanism file or "
-      "--tolerance",
+      "not taken for rounding: correct the figures, or allow it by `tolerance` in the mechanism "
+      "file or --tolerance",
       found.correction, m.joints[found.joint].name, DescribeMisfits(m, misfits), m.tolerance);
 }
 
