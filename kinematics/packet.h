@@ -1,7 +1,8 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <cmath>
+
+#include "vmech/base/eigen.h"
 
 namespace vmech {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vmech/solvers/four.h"
+#include "vmech/base/four.h"
 
 namespace vmech {
 

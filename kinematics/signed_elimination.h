@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include "vmech/base/eigen.h"
 
 namespace vmech {
 

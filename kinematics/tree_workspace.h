@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "vmech/kinematics/kinematic_tree.h"
-#include "vmech/solvers/four.h"
+#include "vmech/base/four.h"
 
 namespace vmech {
 

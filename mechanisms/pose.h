@@ -1,7 +1,8 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <Eigen/Geometry>
+
+#include "vmech/base/eigen.h"
 
 namespace vmech {
 

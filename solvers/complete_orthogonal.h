@@ -1,7 +1,8 @@
 #pragma once
 
 #include <Eigen/Cholesky>
-#include <Eigen/Core>
+
+#include "vmech/base/eigen.h"
 
 namespace vmech {
 

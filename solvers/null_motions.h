@@ -1,7 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
-
+#include "vmech/base/eigen.h"
 #include "vmech/solvers/optimality.h"
 
 namespace vmech {

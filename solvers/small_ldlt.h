@@ -4,7 +4,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "vmech/solvers/four.h"
+#include "vmech/base/four.h"
 
 namespace vmech {
 

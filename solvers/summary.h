@@ -1,9 +1,10 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <limits>
 #include <string>
 #include <string_view>
+
+#include "vmech/base/eigen.h"
 
 namespace vmech {
 
