@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "vmech/kinematics/kinematic_tree.h"
 #include "vmech/base/four.h"
+#include "vmech/kinematics/kinematic_tree.h"
 
 namespace vmech {
 
