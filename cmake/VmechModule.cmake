@@ -1,13 +1,14 @@
-# vmech_add_module(<path> [SOURCES ...] HEADERS ... [INTERNAL ...] [PUBLIC ...] [PRIVATE ...])
+# vmech_add_module(<path> [LOCAL] [SOURCES ...] HEADERS ... [INTERNAL ...] [PUBLIC ...] [PRIVATE ...])
 #
 # One folder, one target. The module `dynamics/bearings` becomes the library vmech_dynamics_bearings
 # (alias vmech::dynamics_bearings) whose headers are included as "vmech/dynamics/bearings/<file>.h",
 # in this tree and from an installation. Each module has an include root of its own, made of
 # forwarding headers: a module can include only what it links to. INTERNAL headers are not installed:
-# what is passed in them depends on the instruction set that the library is compiled for.
+# what is passed in them depends on the instruction set that the library is compiled for. Nothing of a
+# LOCAL module is installed: it is part of a program.
 
 function(vmech_add_module path)
-  cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;INTERNAL;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "LOCAL" "" "SOURCES;HEADERS;INTERNAL;PUBLIC;PRIVATE" ${ARGN})
   string(REPLACE "/" "_" name ${path})
   set(target vmech_${name})
   set(include_root ${PROJECT_BINARY_DIR}/include/${name})
@@ -31,13 +32,14 @@ function(vmech_add_module path)
     file(CONFIGURE OUTPUT ${forward} @ONLY
          CONTENT "#include \"${CMAKE_CURRENT_SOURCE_DIR}/${header}\"\n")
   endforeach()
-  install(FILES ${ARG_HEADERS} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/vmech/${path})
-
   target_include_directories(${target} ${scope}
     $<BUILD_INTERFACE:${include_root}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(${target} ${scope} cxx_std_20)
   target_compile_definitions(${target} ${scope} EIGEN_MAX_ALIGN_BYTES=64
                              EIGEN_MAX_STATIC_ALIGN_BYTES=16)
   target_link_libraries(${target} ${scope} ${ARG_PUBLIC})
-  install(TARGETS ${target} EXPORT vmech-targets)
+  if(NOT ARG_LOCAL)
+    install(FILES ${ARG_HEADERS} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/vmech/${path})
+    install(TARGETS ${target} EXPORT vmech-targets)
+  endif()
 endfunction()

@@ -9,40 +9,13 @@
 #include "vmech/dynamics/hand_wrench.h"
 #include "vmech/dynamics/idle_freedoms.h"
 #include "vmech/dynamics/passive.h"
+#include "vmech/dynamics/study_validity.h"
 #include "vmech/kinematics/assembled_mechanism.h"
 #include "vmech/kinematics/jacobian.h"
 #include "vmech/kinematics/linear_algebra.h"
 
 namespace vmech {
 namespace {
-
-void RequireDrive(const LoadStudy& study) {
-  if (!study.drives.empty() && study.hand) {
-    throw std::invalid_argument(
-        "a study has joint drives or a hand, not both; give `motion` joints or a grasp");
-  }
-  if (study.times.empty()) throw std::invalid_argument("the study has no poses; give `steps`");
-  for (const JointDrive& drive : study.drives) {
-    const Joint& joint = study.mechanism.joints.at(drive.joint);
-    if (joint.type == JointType::kSpherical || joint.type == JointType::kWeld) {
-      throw std::invalid_argument(fmt::format(
-          "joint '{}' is {}; drive a joint with single freedoms, or move the mechanism by a grasp",
-          joint.name, NameOf(joint.type)));
-    }
-    if (drive.freedom < 0 || drive.freedom >= FreedomsOf(joint.type)) {
-      throw std::invalid_argument(fmt::format("joint '{}' has freedoms 1..{}, not {}", joint.name,
-                                              FreedomsOf(joint.type), drive.freedom + 1));
-    }
-  }
-  for (const ExternalLoad& load : study.external) {
-    if (load.over == ExternalLoad::Over::kDriveCoordinate && study.drives.empty()) {
-      throw std::invalid_argument(
-          "an external load is a table over the drive coordinate, but the hand drives; give it "
-          "over "
-          "time `t`");
-    }
-  }
-}
 
 std::vector<int> DrivenVelocities(const LoadStudy& study, const KinematicTree& tree) {
   std::vector<int> driven;
@@ -145,7 +118,7 @@ std::string DrivesAt(const LoadStudy& study, const std::vector<double>& position
 }
 
 PreparedStudy PrepareStudy(const LoadStudy& study) {
-  RequireDrive(study);
+  RequireValid(study);
   SpanningTreeOptions cuts;
   for (const JointDrive& drive : study.drives) cuts.keep.push_back(drive.joint);
 

@@ -14,6 +14,7 @@
 #include "vmech/dynamics/friction_report.h"
 #include "vmech/dynamics/load_model.h"
 #include "vmech/dynamics/rule_dependence.h"
+#include "vmech/dynamics/study_plausibility.h"
 #include "vmech/kinematics/packet.h"
 
 namespace vmech {
@@ -189,6 +190,21 @@ double Larger(double a, double b) {
   return std::isnan(a) || (a > b && !std::isnan(b)) ? a : b;
 }
 
+/// Figures that overflow have no answer.
+void RequireFinite(const LoadStudyResult& result) {
+  for (size_t i = 0; i < result.poses.size(); ++i) {
+    const PoseLoads& pose = result.poses[i];
+    bool finite = pose.hand.Stacked().allFinite() && std::isfinite(pose.power_error_scale);
+    for (const DriveSample& drive : pose.drives) finite = finite && std::isfinite(drive.force);
+    for (const JointSample& joint : pose.joints) finite = finite && joint.Stacked().allFinite();
+    if (finite) continue;
+    throw std::runtime_error(fmt::format(
+        "pose {} (t = {:.6g} s): the loads are too large to be computed; check the units of "
+        "masses, inertias, speeds and external loads",
+        i, pose.time));
+  }
+}
+
 double LargestForce(const LoadStudyResult& result) {
   double largest = 0;
   for (const PoseLoads& pose : result.poses) {
@@ -206,7 +222,7 @@ void CheckBalance(double length, LoadStudyResult* result) {
   double largest = kAtRest * length * LargestForce(*result);
   for (const PoseLoads& pose : result->poses) largest = Larger(pose.power_error_scale, largest);
   for (PoseLoads& pose : result->poses) {
-    pose.power_error = largest == 0 ? 0 : pose.power_error / largest;
+    if (pose.power_error != 0) pose.power_error /= largest;
     result->max_closure = Larger(pose.closure, result->max_closure);
     result->max_power_error = Larger(pose.power_error, result->max_power_error);
   }
@@ -344,6 +360,8 @@ LoadStudyResult RunLoadStudy(const LoadStudy& study, const LoadStudyOptions& opt
   result.norm_length = study.norm_length > 0 ? study.norm_length : prepared.model.tree.length;
   result.warnings = prepared.warnings;
   result.notes = prepared.notes;
+  RequireFinite(result);
+  for (std::string& doubt : DoubtsOf(study, result)) result.warnings.push_back(std::move(doubt));
   const std::vector<size_t> judged = JudgedPoses(motion.size());
   result.certainty = JudgeStudy(prepared.model, motion, judged);
   AddRuleDependence(prepared, motion, judged, &result);

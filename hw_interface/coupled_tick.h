@@ -2,7 +2,7 @@
 
 #include "vmech/dynamics/coupled_dynamics.h"
 #include "vmech/hw_interface/closing_hand.h"
-#include "vmech/hw_interface/joint_peaks.h"
+#include "vmech/hw_interface/peak_forces.h"
 #include "vmech/hw_interface/tick.h"
 
 namespace vmech {
@@ -83,7 +83,7 @@ class CoupledTick : public Tick {
   Screw fading_;       // of one that was
   double stored_ = 0;  // when it was last held [J]
   MovingFrame hand_;
-  JointPeaks peaks_;
+  PeakForces peaks_;
   CoupledSummary summary_;
 };
 

@@ -2,7 +2,7 @@
 
 #include "vmech/dynamics/hand_dynamics.h"
 #include "vmech/hw_interface/contact_law.h"
-#include "vmech/hw_interface/joint_peaks.h"
+#include "vmech/hw_interface/peak_forces.h"
 #include "vmech/hw_interface/pose_estimator.h"
 #include "vmech/hw_interface/tick.h"
 #include "vmech/kinematics/hand_tracker.h"
@@ -64,7 +64,7 @@ class MechanismTick : public Tick {
   TrackStatus track_ = TrackStatus::kNotRun;
   double period_;
   Posed X_WG_;
-  JointPeaks peaks_;
+  PeakForces peaks_;
 };
 
 }  // namespace vmech

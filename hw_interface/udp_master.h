@@ -48,7 +48,7 @@ class UdpMaster : public Master {
   UdpMasterOptions options_;
   sockaddr_in device_;
   std::unique_ptr<UdpSocket> socket_;
-  Packet out_, in_;
+  UdpPacket out_, in_;
   MasterState newest_;
   bool fault_ = false;
   std::uint64_t last_sequence_ = 0;

@@ -44,7 +44,7 @@ class UdpServer {
   UdpServerOptions options_;
   Master* device_;
   UdpSocket socket_;
-  Packet in_, out_;
+  UdpPacket in_, out_;
   sockaddr_in host_{};
   std::uint64_t session_ = 0;  // 0: nobody
   std::uint64_t last_sequence_ = 0;

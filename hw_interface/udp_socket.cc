@@ -42,7 +42,7 @@ UdpSocket::~UdpSocket() {
   ::close(fd_);
 }
 
-bool UdpSocket::Send(const Packet& packet, const sockaddr_in& to) noexcept {
+bool UdpSocket::Send(const UdpPacket& packet, const sockaddr_in& to) noexcept {
   const std::size_t size = Encode(packet, &out_);
   return ::sendto(fd_, out_.data(), size, 0, reinterpret_cast<const sockaddr*>(&to), sizeof to) ==
          static_cast<ssize_t>(size);

@@ -29,7 +29,7 @@ class UdpSocket {
 
   int port() const noexcept { return port_; }
 
-  bool Send(const Packet& packet, const sockaddr_in& to) noexcept;
+  bool Send(const UdpPacket& packet, const sockaddr_in& to) noexcept;
   /// The next datagram and its sender; nullopt if none waits. An empty span is one that was longer
   /// than any packet.
   std::optional<std::span<const std::byte>> Receive(sockaddr_in* from) noexcept;

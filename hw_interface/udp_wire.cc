@@ -146,7 +146,7 @@ DeviceInfo WithFiniteSpeeds(DeviceInfo info) {
   return info;
 }
 
-void WritePayload(const Packet& packet, Writer* write) {
+void WritePayload(const UdpPacket& packet, Writer* write) {
   switch (packet.header.kind) {
     case PacketKind::kHello:
     case PacketKind::kBye:
@@ -217,7 +217,7 @@ bool ReadCommand(Reader* read, RemoteCommand* command) {
 
 }  // namespace
 
-std::size_t Encode(const Packet& packet, PacketBytes* bytes) noexcept {
+std::size_t Encode(const UdpPacket& packet, PacketBytes* bytes) noexcept {
   Writer write(bytes->data());
   const std::size_t size = kHeaderSize + PayloadSize(packet.header.kind);
   write(kMagic);
@@ -229,7 +229,7 @@ std::size_t Encode(const Packet& packet, PacketBytes* bytes) noexcept {
   return size + kCrcSize;
 }
 
-bool Decode(std::span<const std::byte> bytes, Packet* packet) {
+bool Decode(std::span<const std::byte> bytes, UdpPacket* packet) {
   if (bytes.size() < kHeaderSize + kCrcSize || bytes.size() > kLargestPacket) return false;
   Reader read(bytes.data());
   std::uint32_t magic, crc;

@@ -38,7 +38,7 @@ struct RemoteCommand {
 };
 
 /// Any packet; only the member of its kind is set.
-struct Packet {
+struct UdpPacket {
   PacketHeader header;
   DeviceInfo info;
   MasterState state;
@@ -50,12 +50,12 @@ inline constexpr std::size_t kLargestPacket = 512;
 using PacketBytes = std::array<std::byte, kLargestPacket>;
 
 /// Writes a packet and returns its size. No allocation except for reading the name of kInfo.
-std::size_t Encode(const Packet& packet, PacketBytes* bytes) noexcept;
+std::size_t Encode(const UdpPacket& packet, PacketBytes* bytes) noexcept;
 
 /// Reads a packet; false, and `packet` undefined, unless the bytes are exactly one well-formed
 /// packet: known kind, its length, checksum, no negative times (their differences could overflow),
 /// finite numbers, rotations that are rotations, words within their enumerations. No allocation
 /// except for the name of kInfo.
-[[nodiscard]] bool Decode(std::span<const std::byte> bytes, Packet* packet);
+[[nodiscard]] bool Decode(std::span<const std::byte> bytes, UdpPacket* packet);
 
 }  // namespace vmech

@@ -149,6 +149,11 @@ RotationRates RatesOfRotationVector(const Vector3d& r, const Vector3d& rd, const
 }  // namespace
 
 MotionLaw MotionLaw::Uniform(double start, double speed, double acceleration) {
+  if (!std::isfinite(start) || !std::isfinite(speed) || !std::isfinite(acceleration)) {
+    throw std::invalid_argument(fmt::format(
+        "MotionLaw::Uniform: start = {}, speed = {}, acceleration = {}; all must be finite", start,
+        speed, acceleration));
+  }
   MotionLaw law;
   law.pieces_.push_back({0, 0, {start, speed, acceleration / 2, 0}});
   return law;
@@ -164,6 +169,7 @@ MotionLaw MotionLaw::TableWithDwells(const std::vector<double>& times,
                                      const std::vector<double>& values,
                                      const std::vector<bool>& dwells) {
   MotionLaw law;
+  law.roughness_ = FindRoughness(times, values);
   const size_t last = times.size() - 1;
   if (last == 0) return Uniform(values[0], 0);
   for (size_t i = 0; i < last;) {
@@ -240,6 +246,15 @@ HandLaw HandLaw::Table(const std::vector<double>& times, const std::vector<Posed
     law.rotation_vector_.push_back(MotionLaw::TableWithDwells(times, r[k], stops));
   }
   return law;
+}
+
+TableRoughness HandLaw::Together(const std::vector<MotionLaw>& axes) {
+  TableRoughness together;
+  for (const MotionLaw& axis : axes) {
+    together.acceleration = std::hypot(together.acceleration, axis.roughness().acceleration);
+    together.noise = std::hypot(together.noise, axis.roughness().noise);
+  }
+  return together;
 }
 
 HandSample HandLaw::At(double t) const {

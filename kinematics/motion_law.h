@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "vmech/kinematics/table_roughness.h"
 #include "vmech/mechanisms/pose.h"
 
 namespace vmech {
@@ -22,12 +23,18 @@ struct MotionSample {
 class MotionLaw {
  public:
   /// position = start + speed t + acceleration t^2 / 2.
+  /// @throws std::invalid_argument if one is not finite.
   static MotionLaw Uniform(double start, double speed, double acceleration = 0);
   /// @throws std::invalid_argument if the lengths differ, the table is empty, a value is not finite
   ///         or the times do not increase; the message names the row (counted from 1).
   static MotionLaw Table(const std::vector<double>& times, const std::vector<double>& values);
 
+  /// One that was not given, as MotionLaw() is: it has no position.
+  bool empty() const { return pieces_.empty(); }
+  /// Precondition: not empty.
   MotionSample At(double t) const;
+  /// Of the table; zero for a uniform motion.
+  const TableRoughness& roughness() const { return roughness_; }
 
  private:
   friend class HandLaw;
@@ -43,6 +50,7 @@ class MotionLaw {
     double c[4];  ///< position = sum c_k (t - t0)^k
   };
   std::vector<Piece> pieces_;
+  TableRoughness roughness_;
 };
 
 /// Pose, velocity and acceleration of a hand-held frame in the world.
@@ -62,9 +70,18 @@ class HandLaw {
   ///         away from the first.
   static HandLaw Table(const std::vector<double>& times, const std::vector<Posed>& poses);
 
+  /// One that was not given, as HandLaw() is: it has no pose.
+  bool empty() const { return position_.empty(); }
+  /// Precondition: not empty.
   HandSample At(double t) const;
+  /// Of its positions [m/s^2] and of its rotation vectors [rad/s^2].
+  TableRoughness position_roughness() const { return Together(position_); }
+  TableRoughness rotation_roughness() const { return Together(rotation_vector_); }
 
  private:
+  /// Root of the sum of squares over three axes.
+  static TableRoughness Together(const std::vector<MotionLaw>& axes);
+
   Matrix3d R_W0_ = Matrix3d::Identity();
   std::vector<MotionLaw> position_;
   std::vector<MotionLaw> rotation_vector_;

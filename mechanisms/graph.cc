@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "vmech/mechanisms/validity.h"
+
 namespace vmech {
 namespace {
 
@@ -62,6 +64,11 @@ void RequireConnected(const Mechanism& mechanism, const std::vector<int>& distan
   }
 }
 
+void RequireJoints(std::string_view field, const std::vector<int>& joints,
+                   const Mechanism& mechanism) {
+  for (int joint : joints) RequireIndex(field, joint, mechanism.joints.size());
+}
+
 bool Contains(const std::vector<int>& list, int value) {
   return std::find(list.begin(), list.end(), value) != list.end();
 }
@@ -102,6 +109,10 @@ void AppendBranches(const Mechanism& mechanism, const std::vector<bool>& in_tree
 }  // namespace
 
 SpanningTree FindSpanningTree(const Mechanism& mechanism, const SpanningTreeOptions& options) {
+  RequireValid(mechanism);
+  RequireJoints("SpanningTreeOptions.cut", options.cut, mechanism);
+  RequireJoints("SpanningTreeOptions.keep", options.keep, mechanism);
+  RequireJoints("SpanningTreeOptions.prefer", options.prefer, mechanism);
   const std::vector<int> distance = DistancesFromGround(mechanism);
   RequireConnected(mechanism, distance);
 

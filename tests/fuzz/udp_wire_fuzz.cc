@@ -31,7 +31,7 @@ Bytes Sealed(Bytes bytes) {
 /// A sound packet, its kind by the first byte of the data, with some of its bytes replaced. The
 /// rest of the data is a list of edits: where (two bytes, the highest bit for a whole word), what.
 Bytes Edited(const Bytes& data) {
-  vmech::Packet packet;
+  vmech::UdpPacket packet;
   packet.header.kind = static_cast<vmech::PacketKind>(1 + std::to_integer<int>(data[0]) % 5);
   packet.info.name.assign(64, 'n');  // as long as the packet can hold, so ended by its last byte
   vmech::PacketBytes written;
@@ -56,7 +56,7 @@ bool AreFinite(const vmech::HandlePhysics& handle) {
 }
 
 /// What the users of a packet take for granted.
-bool IsSound(const vmech::Packet& packet) {
+bool IsSound(const vmech::UdpPacket& packet) {
   if (packet.header.sent_ns < 0 || packet.header.reflected_sent_ns < 0) return false;
   const vmech::MasterState& state = packet.state;
   const vmech::RemoteCommand& command = packet.command;
@@ -83,7 +83,7 @@ bool IsSound(const vmech::Packet& packet) {
 /// Bytes are refused or make a sound packet, which when written again gives the same bytes. (A name
 /// may be followed by anything, which is not kept.)
 void CheckDecode(const Bytes& bytes) {
-  vmech::Packet packet, again;
+  vmech::UdpPacket packet, again;
   if (!vmech::Decode(bytes, &packet)) return;
   Require(IsSound(packet));
   vmech::PacketBytes once, twice;

@@ -39,10 +39,10 @@ class Relay {
  private:
   struct Waiting {
     int due;
-    Packet packet;
+    UdpPacket packet;
   };
   void Queue(std::span<const std::byte> bytes, const Faults& faults, std::deque<Waiting>* queue) {
-    Packet packet;
+    UdpPacket packet;
     if (!Decode(bytes, &packet) || random_.Between(0, 1) < faults.loss) return;
     const int copies = random_.Between(0, 1) < faults.duplication ? 2 : 1;
     const int later = random_.Between(0, 1) < faults.reordering ? 3 : 0;

@@ -8,8 +8,8 @@
 namespace vmech {
 namespace {
 
-Packet StatePacket() {
-  Packet packet;
+UdpPacket StatePacket() {
+  UdpPacket packet;
   packet.header = {PacketKind::kState, 7, 8, 9, 10};
   packet.state.sequence = 11;
   packet.state.X_DH.R = Eigen::AngleAxisd(0.3, Vector3d::UnitY()).toRotationMatrix();
@@ -27,7 +27,7 @@ std::span<const std::byte> Bytes(const PacketBytes& bytes, std::size_t size) {
 
 TEST(UdpWire, StateComesBackAsItWas) {
   PacketBytes bytes;
-  Packet out;
+  UdpPacket out;
   ASSERT_TRUE(Decode(Bytes(bytes, Encode(StatePacket(), &bytes)), &out));
   EXPECT_EQ(out.header.session, 7u);
   EXPECT_EQ(out.header.reflected_sent_ns, 10);
@@ -41,13 +41,13 @@ TEST(UdpWire, StateComesBackAsItWas) {
 }
 
 TEST(UdpWire, CommandComesBackAsItWas) {
-  Packet packet;
+  UdpPacket packet;
   packet.header.kind = PacketKind::kCommand;
   packet.command = {true, 123, {}};
   packet.command.command.mode = CommandMode::kWrench;
   packet.command.command.F_Ho_D[2] = 4;
   PacketBytes bytes;
-  Packet out;
+  UdpPacket out;
   ASSERT_TRUE(Decode(Bytes(bytes, Encode(packet, &bytes)), &out));
   EXPECT_TRUE(out.command.active);
   EXPECT_EQ(out.command.lifetime_ns, 123);
@@ -56,14 +56,14 @@ TEST(UdpWire, CommandComesBackAsItWas) {
 }
 
 TEST(UdpWire, InfoComesBackAndALongNameIsCut) {
-  Packet packet;
+  UdpPacket packet;
   packet.header.kind = PacketKind::kInfo;
   packet.info.name = std::string(100, 'n');
   packet.info.delay = 2e-3;
   packet.info.takes_wrench = true;
   packet.info.angular.damping = 0.125;
   PacketBytes bytes;
-  Packet out;
+  UdpPacket out;
   ASSERT_TRUE(Decode(Bytes(bytes, Encode(packet, &bytes)), &out));
   EXPECT_EQ(out.info.name, std::string(47, 'n'));
   EXPECT_EQ(out.info.delay, 2e-3);
@@ -75,7 +75,7 @@ TEST(UdpWire, InfoComesBackAndALongNameIsCut) {
 TEST(UdpWire, EveryFlippedBitIsNoticed) {
   PacketBytes bytes;
   const std::size_t size = Encode(StatePacket(), &bytes);
-  Packet out;
+  UdpPacket out;
   for (std::size_t bit = 0; bit < 8 * size; ++bit) {
     bytes[bit / 8] ^= std::byte(1 << bit % 8);
     EXPECT_FALSE(Decode(Bytes(bytes, size), &out)) << bit;
@@ -86,7 +86,7 @@ TEST(UdpWire, EveryFlippedBitIsNoticed) {
 TEST(UdpWire, EveryOtherLengthIsRefused) {
   PacketBytes bytes{};
   const std::size_t size = Encode(StatePacket(), &bytes);
-  Packet out;
+  UdpPacket out;
   for (std::size_t n = 0; n <= bytes.size(); ++n) {
     EXPECT_EQ(Decode(Bytes(bytes, n), &out), n == size) << n;
   }
@@ -94,8 +94,8 @@ TEST(UdpWire, EveryOtherLengthIsRefused) {
 
 TEST(UdpWire, RefusesWhatIsNotANumberOrNotARotation) {
   PacketBytes bytes;
-  Packet out;
-  Packet packet = StatePacket();
+  UdpPacket out;
+  UdpPacket packet = StatePacket();
   packet.state.V_DH[3] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(Decode(Bytes(bytes, Encode(packet, &bytes)), &out));
   packet = StatePacket();
@@ -105,8 +105,8 @@ TEST(UdpWire, RefusesWhatIsNotANumberOrNotARotation) {
 
 TEST(UdpWire, RefusesTimesWhoseDifferenceCouldOverflow) {
   PacketBytes bytes;
-  Packet out;
-  Packet packet = StatePacket();
+  UdpPacket out;
+  UdpPacket packet = StatePacket();
   packet.header.reflected_sent_ns = std::numeric_limits<std::int64_t>::min();
   EXPECT_FALSE(Decode(Bytes(bytes, Encode(packet, &bytes)), &out));
   packet = StatePacket();
@@ -116,7 +116,7 @@ TEST(UdpWire, RefusesTimesWhoseDifferenceCouldOverflow) {
 
 TEST(UdpWire, ChecksumIsTheUsualOne) {
   // A header without payload by an independent implementation (Python's zlib.crc32).
-  Packet packet;
+  UdpPacket packet;
   packet.header = {PacketKind::kHello, 1, 2, 3, 4};
   PacketBytes bytes;
   const std::size_t size = Encode(packet, &bytes);

@@ -11,9 +11,9 @@ namespace vmech {
 
 /// Forces of a mechanism's joints over a run: a channel each, as far as there is room, and the
 /// largest. No allocation after construction.
-class JointPeaks {
+class PeakForces {
  public:
-  explicit JointPeaks(const Mechanism& mechanism);
+  explicit PeakForces(const Mechanism& mechanism);
 
   /// "force main", ... behind the names that are there already, as far as kMaxChannels allow.
   void AppendNames(std::vector<std::string>* names) const;

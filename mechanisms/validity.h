@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+#include "vmech/mechanisms/mechanism.h"
+
+namespace vmech {
+
+/// Is it a mechanism at all? Names are unique, indices lead somewhere, figures are finite, axes are
+/// square and right-handed, inertias are those of bodies, and lists have a value per freedom. What
+/// a reader gives is valid; what a program puts together may not be.
+/// @throws std::invalid_argument naming the item, the field, its value and what it must be.
+void RequireValid(const Mechanism& mechanism);
+
+/// `index` must be one of a list of `count`: joints, links, grasps. `field` is what holds the
+/// index, as in "drives[0].joint".
+/// @throws std::invalid_argument naming field, value and range.
+void RequireIndex(std::string_view field, int index, size_t count);
+
+}  // namespace vmech
