@@ -1,11 +1,12 @@
-# vmech_add_module(<path> [LOCAL] [SOURCES ...] HEADERS ... [INTERNAL ...] [PUBLIC ...] [PRIVATE ...])
+# vmech_add_module(<path> [LOCAL] [SOURCES ...] HEADERS ... [INTERNAL ...] [PUBLIC ...]
+#                  [PRIVATE ...])
 #
 # One folder, one target. The module `dynamics/bearings` becomes the library vmech_dynamics_bearings
 # (alias vmech::dynamics_bearings) whose headers are included as "vmech/dynamics/bearings/<file>.h",
 # in this tree and from an installation. Each module has an include root of its own, made of
-# forwarding headers: a module can include only what it links to. INTERNAL headers are not installed:
-# what is passed in them depends on the instruction set that the library is compiled for. Nothing of a
-# LOCAL module is installed: it is part of a program.
+# forwarding headers: a module can include only what it links to. INTERNAL headers are not
+# installed: what is passed in them depends on the instruction set that the library is compiled for.
+# Nothing of a LOCAL module is installed: it is part of a program.
 
 function(vmech_add_module path)
   cmake_parse_arguments(ARG "LOCAL" "" "SOURCES;HEADERS;INTERNAL;PUBLIC;PRIVATE" ${ARGN})
@@ -19,6 +20,7 @@ function(vmech_add_module path)
                           SOVERSION ${PROJECT_VERSION_MAJOR})
     target_link_libraries(${target} PRIVATE ${ARG_PRIVATE} $<BUILD_INTERFACE:vmech_settings>
                                             $<BUILD_INTERFACE:vmech_kernel_settings>)
+    vmech_precompile(${target} library)
     set(scope PUBLIC)
   else()
     add_library(${target} INTERFACE)

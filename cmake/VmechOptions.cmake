@@ -37,6 +37,10 @@ find_program(VMECH_CCACHE ccache)
 if(VMECH_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${VMECH_CCACHE})
 endif()
+set(VMECH_PRECOMPILE_DEFAULT ON)
+if(CMAKE_CXX_COMPILER_LAUNCHER)
+  set(VMECH_PRECOMPILE_DEFAULT OFF)
+endif()
 
 # vmech_settings: what every source of this tree is compiled with; never exported.
 add_library(vmech_settings INTERFACE)

@@ -1,7 +1,10 @@
 #include "vmech/dynamics/coupled_dynamics.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "vmech/dynamics/contact_friction.h"
 #include "vmech/kinematics/forward_kinematics.h"
@@ -9,6 +12,7 @@
 #include "vmech/kinematics/mobility.h"
 #include "vmech/kinematics/rotation_error.h"
 #include "vmech/kinematics/screw_algebra.h"
+#include "vmech/kinematics/validity.h"
 #include "vmech/solvers/small_ldlt.h"
 #include "vmech/solvers/stopping_rule.h"
 
@@ -42,6 +46,15 @@ HandCoupling Checked(HandCoupling coupling, GraspKind kind) {
     coupling.damping.tail<3>().setZero();
   }
   return coupling;
+}
+
+void RequireClosed(double closure) {
+  constexpr double kOpen = 1e-6;
+  if (closure <= kOpen) return;
+  throw std::invalid_argument(fmt::format(
+      "CoupledDynamics: the loops are open by {:.3g} of the characteristic length at q; "
+      "close them first (Assemble)",
+      closure));
 }
 
 /// Of a spring along `way` that pulls with `pull`, and with no more than `most`.
@@ -107,9 +120,11 @@ CoupledDynamics::CoupledDynamics(const KinematicTree& tree, const GraspFrame& gr
       miss_(mu_),
       joints_(tree.mechanism.joints.size()) {
   CheckRange("CoupledDynamics", "step", step, 1e-7, 1);
+  RequireCoordinates("CoupledDynamics: q", tree, q);
   RefuseUnrenderedFriction(tree);
   ListFreedoms();
   pose_.Set(q);
+  RequireClosed(pose_.e2().norm());
   hand_.X = pose_.grasp_axes();
   TakeInertia();
   TakeVelocities();

@@ -11,6 +11,7 @@
 #include "vmech/kinematics/forward_kinematics.h"
 #include "vmech/kinematics/linear_algebra.h"
 #include "vmech/kinematics/screw_algebra.h"
+#include "vmech/kinematics/validity.h"
 #include "vmech/solvers/small_ldlt.h"
 
 namespace vmech {
@@ -57,6 +58,7 @@ HandDynamics::HandDynamics(const KinematicTree& tree, const GraspFrame& grasp,
       mu_(d_),
       joints_(tree.mechanism.joints.size()),
       spring_length_(tree.nv, 0.0) {
+  RequireCoordinates("HandDynamics: q", tree, q);
   RefuseUnrenderedFriction(tree);
   const double k = MeanStiffness(K_, tree.length);
   if (!(k > 0)) throw std::invalid_argument("hand: a stiffness above zero is needed");

@@ -7,6 +7,7 @@
 
 #include "vmech/kinematics/loops.h"
 #include "vmech/kinematics/screw_algebra.h"
+#include "vmech/kinematics/validity.h"
 #include "vmech/solvers/small_ldlt.h"
 
 namespace vmech {
@@ -29,6 +30,7 @@ HeldPose::HeldPose(const KinematicTree& tree, const GraspFrame& grasp)
       J_(tree.nv),
       C_(MatrixXd::Zero(PaddedSize(tree.rows), tree.nv)),
       e2_(VectorXd::Zero(C_.rows())) {
+  RequireNode("grasp.node", tree, grasp.node);
   FallUpwards(tree.mechanism.gravity_W, &ws_);
 }
 

@@ -70,19 +70,20 @@ void RequireHand(const Mechanism& mechanism, const HandDrive& hand) {
 }
 
 void RequireTable(const std::string& field, const ExternalLoad& load) {
-  if (load.at.empty() || load.at.size() != load.wrenches.size()) {
+  const bool constant = load.over == ExternalLoad::Over::kConstant;
+  if (constant && load.wrenches.size() != 1) {
+    Refuse(field, fmt::format(" is constant, but has {} wrenches; give one", load.wrenches.size()));
+  }
+  if (!constant && (load.at.empty() || load.at.size() != load.wrenches.size())) {
     Refuse(field, fmt::format(": `at` has {} rows and `wrenches` {}; give as many, one at least",
                               load.at.size(), load.wrenches.size()));
-  }
-  if (load.over == ExternalLoad::Over::kConstant && load.at.size() != 1) {
-    Refuse(field, fmt::format(" is constant, but has {} rows; give one", load.at.size()));
   }
   RequireIncreasing(field + ".at", load.at);
   for (size_t i = 0; i < load.wrenches.size(); ++i) {
     if (load.wrenches[i].Stacked().allFinite()) continue;
     Refuse(fmt::format("{}.wrenches[{}]", field, i), " holds values that are not finite");
   }
-  RequirePeriod(field + ".period", load.period, load.at);
+  if (!constant) RequirePeriod(field + ".period", load.period, load.at);
 }
 
 void RequireLoad(const std::string& field, const LoadStudy& study, const ExternalLoad& load) {

@@ -12,6 +12,7 @@
 #include "vmech/kinematics/loop_walk.h"
 #include "vmech/kinematics/loops.h"
 #include "vmech/mechanisms/freedoms.h"
+#include "vmech/mechanisms/validity.h"
 
 namespace vmech {
 namespace {
@@ -260,6 +261,10 @@ std::vector<std::string> StartsOutsideLimits(const Mechanism& mechanism) {
 }
 
 AssembledMechanism AssembleMechanism(const Mechanism& mechanism, const AssembleOptions& options) {
+  RequireValid(mechanism);
+  for (int joint : options.fixed_joints) {
+    RequireIndex("AssembleOptions.fixed_joints", joint, mechanism.joints.size());
+  }
   return Assembler(mechanism, options).Run();
 }
 

@@ -11,6 +11,7 @@
 #include "vmech/kinematics/linear_algebra.h"
 #include "vmech/kinematics/loops.h"
 #include "vmech/kinematics/mobility.h"
+#include "vmech/kinematics/validity.h"
 #include "vmech/solvers/starts.h"
 
 namespace vmech {
@@ -278,6 +279,8 @@ void AssemblyOptions::Validate() const {
 
 AssemblySummary Assemble(const KinematicTree& tree, const AssemblyOptions& options, VectorXd* q) {
   options.Validate();
+  RequireCoordinates("Assemble: q", tree, *q);
+  RequireVelocities("AssemblyOptions: fixed", tree, options.fixed);
   AssemblySummary summary;
   if (tree.loops.empty()) {
     summary.closed = true;

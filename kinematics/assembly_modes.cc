@@ -12,6 +12,7 @@
 #include "vmech/kinematics/linear_algebra.h"
 #include "vmech/kinematics/loops.h"
 #include "vmech/kinematics/mobility.h"
+#include "vmech/kinematics/validity.h"
 #include "vmech/solvers/penalty.h"
 
 namespace vmech {
@@ -353,6 +354,7 @@ std::string AssemblyModes::BriefReport() const {
 AssemblyModes FindAssemblyModes(const KinematicTree& tree, const AssemblyModesOptions& options,
                                 const VectorXd& q) {
   options.Validate(tree);
+  RequireCoordinates("FindAssemblyModes: q", tree, q);
   ModeSearch search(tree, options, q);
   Starts starts(tree, options, q);
   search.Try(q);

@@ -10,6 +10,7 @@
 #include "vmech/kinematics/configuration_distance.h"
 #include "vmech/kinematics/signed_elimination.h"
 #include "vmech/kinematics/unseen_motions.h"
+#include "vmech/kinematics/validity.h"
 #include "vmech/solvers/stopping_rule.h"
 
 namespace vmech {
@@ -114,6 +115,7 @@ HandTracker::HandTracker(const KinematicTree& tree, const GraspFrame& grasp, con
       dq_(tree.nv),
       origin_(q) {
   options.Validate();
+  RequireCoordinates("HandTracker: q", tree, q);
   rescue_options_.weight = options.weight;
   rescue_options_.max_weight = std::max(options.weight, rescue_options_.max_weight);
   rescue_options_.max_step = options.max_move / std::max(1, options.rescue_iterations);

@@ -10,6 +10,8 @@
 #include "vmech/kinematics/forward_kinematics.h"
 #include "vmech/kinematics/loop_derivatives.h"
 #include "vmech/kinematics/loops.h"
+#include "vmech/kinematics/validity.h"
+#include "vmech/mechanisms/validity.h"
 
 namespace vmech {
 namespace {
@@ -60,7 +62,8 @@ int VelocitiesOf(const TreeNode& node) {
 }  // namespace
 
 GraspFrame GraspFrameOf(const KinematicTree& tree, int grasp) {
-  const Grasp& g = tree.mechanism.grasps.at(grasp);
+  RequireIndex("GraspFrameOf: grasp", grasp, tree.mechanism.grasps.size());
+  const Grasp& g = tree.mechanism.grasps[grasp];
   return {tree.NodeOfLink(g.link), tree.X_node_link(g.link) * g.X_LG, g.kind};
 }
 
@@ -85,6 +88,7 @@ InverseKinematics::InverseKinematics(const KinematicTree& tree, const GraspFrame
       q_(VectorXd::Constant(tree.nq, std::numeric_limits<double>::quiet_NaN())),
       ws_(tree) {
   options.Validate();
+  RequireNode("InverseKinematics: grasp.node", tree, grasp.node);
   K_ = EffectiveStiffness(options.stiffness, grasp.kind, tree.length);
   energy_ = EnergyScale(K_, tree.length);
   if (!(energy_ > 0)) {

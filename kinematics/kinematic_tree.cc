@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "vmech/kinematics/forward_kinematics.h"
+#include "vmech/mechanisms/validity.h"
 
 namespace vmech {
 namespace {
@@ -212,7 +213,18 @@ std::string NameOfVelocity(const KinematicTree& tree, int v) {
   return "?";
 }
 
+namespace {
+
+void RequireFreedom(const Mechanism& mechanism, int joint, int freedom) {
+  RequireIndex("joint", joint, mechanism.joints.size());
+  const Joint& of = mechanism.joints[joint];
+  RequireIndex("freedom of joint '" + of.name + "'", freedom, FreedomsOf(of.type));
+}
+
+}  // namespace
+
 int VelocityIndex(const KinematicTree& tree, int joint, int freedom) {
+  RequireFreedom(tree.mechanism, joint, freedom);
   for (const TreeNode& node : tree.nodes) {
     if (node.joint != joint || node.v < 0) continue;
     if (node.motion == NodeMotion::kSpherical) return node.v + freedom;
@@ -222,6 +234,7 @@ int VelocityIndex(const KinematicTree& tree, int joint, int freedom) {
 }
 
 int CoordinateIndex(const KinematicTree& tree, int joint, int freedom) {
+  RequireFreedom(tree.mechanism, joint, freedom);
   for (const TreeNode& node : tree.nodes) {
     if (node.joint != joint || node.q < 0 || node.motion == NodeMotion::kSpherical) continue;
     if (node.freedom == freedom) return node.q;

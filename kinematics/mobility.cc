@@ -11,6 +11,7 @@
 #include "vmech/kinematics/forward_kinematics.h"
 #include "vmech/kinematics/linear_algebra.h"
 #include "vmech/kinematics/loops.h"
+#include "vmech/kinematics/validity.h"
 
 namespace vmech {
 namespace {
@@ -103,6 +104,7 @@ MatrixXd DimensionlessLoopJacobian(const KinematicTree& tree, const VectorXd& q)
 }
 
 Mobility AnalyseMobility(const KinematicTree& tree, const VectorXd& q) {
+  RequireCoordinates("AnalyseMobility: q", tree, q);
   Mobility result;
   result.gruebler = tree.nv - tree.rows;
   std::vector<VectorXd> poses{q};
@@ -128,6 +130,8 @@ Mobility AnalyseMobility(const KinematicTree& tree, const VectorXd& q) {
 
 CoordinatePartition PartitionForDrives(const KinematicTree& tree, const VectorXd& q_general,
                                        const std::vector<int>& driven) {
+  RequireCoordinates("PartitionForDrives: q", tree, q_general);
+  RequireVelocities("PartitionForDrives: driven", tree, driven);
   const MatrixXd C = DimensionlessLoopJacobian(tree, q_general);
   const NullSpace free = FindNullSpace(C, kRankTolerance);
   MatrixXd driven_rows(driven.size(), free.basis.cols());
@@ -153,6 +157,7 @@ CoordinatePartition PartitionForDrives(const KinematicTree& tree, const VectorXd
 }
 
 CoordinatePartition PartitionAtPose(const KinematicTree& tree, const VectorXd& q) {
+  RequireCoordinates("PartitionAtPose: q", tree, q);
   const NullSpace free = SpaceAt(tree, q);
   return MakePartition(tree, MostIndependentRows(free.basis, static_cast<int>(free.basis.cols())),
                        {});

@@ -64,6 +64,7 @@ void RequireDistinctNames(std::string_view list, const std::vector<Item>& items)
 }
 
 void RequireMassProperties(const std::string& link, const MassProperties& body) {
+  constexpr double kRounding = 1e-3;  // of figures that are published with three digits
   RequireNonNegative(link + ".mass_properties.mass", body.mass);
   RequireFinite(link + ".mass_properties.p_LoLcm", body.p_LoLcm);
   const Matrix3d& I = body.I_Lcm;
@@ -73,9 +74,12 @@ void RequireMassProperties(const std::string& link, const MassProperties& body) 
   if ((I - I.transpose()).cwiseAbs().maxCoeff() > 1e-9 * scale) {
     Refuse(field, " is not symmetric; make it with InertiaFromElements");
   }
-  if (const std::string defect = InertiaDefect(I, scale); !defect.empty()) {
-    Refuse(field, ": " + defect);
-  }
+  const Vector3d moments = PrincipalMoments(I);
+  if (moments[0] >= -kRounding * scale) return;
+  Refuse(field,
+         fmt::format(" is not positive definite: principal moments {:.6g}, {:.6g}, {:.6g} "
+                     "kg m^2; it is about the centre of gravity (InertiaAboutCenterOfGravity)",
+                     moments[0], moments[1], moments[2]));
 }
 
 void RequireLink(const std::string& name, const Link& link) {

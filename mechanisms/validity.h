@@ -8,7 +8,7 @@
 namespace vmech {
 
 /// Is it a mechanism at all? Names are unique, indices lead somewhere, figures are finite, axes are
-/// square and right-handed, inertias are those of bodies, and lists have a value per freedom. What
+/// square and right-handed, inertias are not negative, and lists have a value per freedom. What
 /// a reader gives is valid; what a program puts together may not be.
 /// @throws std::invalid_argument naming the item, the field, its value and what it must be.
 void RequireValid(const Mechanism& mechanism);

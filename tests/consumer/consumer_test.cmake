@@ -1,22 +1,47 @@
-# Two tests: install vmech into the build folder, then build and run the project beside this file
-# with find_package(vmech). It gets no include path and no target from this build.
+# Installs vmech into the build folder, then builds and runs the project beside this file with
+# find_package(vmech) and flags of its own: it gets no include path and no target from this build.
+# What it prints of the layout of every public class must be the same for all flags.
 
-set(prefix ${CMAKE_CURRENT_BINARY_DIR}/consumer/prefix)
+set(consumer ${CMAKE_CURRENT_BINARY_DIR}/consumer)
 set(consumer_flags "")
 if(VMECH_SANITIZE)
   set(consumer_flags -fsanitize=${VMECH_SANITIZE})
 endif()
 
 add_test(NAME consumer.install
-  COMMAND ${CMAKE_COMMAND} --install ${PROJECT_BINARY_DIR} --prefix ${prefix})
+  COMMAND sh -c "rm -rf ${consumer} && ${CMAKE_COMMAND} --install . --prefix ${consumer}/prefix"
+  WORKING_DIRECTORY ${PROJECT_BINARY_DIR})
 set_tests_properties(consumer.install PROPERTIES FIXTURES_SETUP vmech_installation)
 
-add_test(NAME consumer.finds_the_installed_package
-  COMMAND ${CMAKE_CTEST_COMMAND}
-    --build-and-test ${CMAKE_CURRENT_LIST_DIR} ${CMAKE_CURRENT_BINARY_DIR}/consumer/build
-    --build-generator ${CMAKE_GENERATOR}
-    --build-options -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER}
-                    -DCMAKE_CXX_FLAGS=${consumer_flags} -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF
-    --test-command consumer)
-set_tests_properties(consumer.finds_the_installed_package PROPERTIES
-  FIXTURES_REQUIRED vmech_installation)
+function(vmech_add_consumer name)
+  add_test(NAME consumer.${name}
+    COMMAND ${CMAKE_CTEST_COMMAND}
+      --build-and-test ${CMAKE_CURRENT_LIST_DIR} ${consumer}/${name}
+      --build-generator ${CMAKE_GENERATOR}
+      --build-options -DCMAKE_PREFIX_PATH=${consumer}/prefix
+                      -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER}
+                      "-DCMAKE_CXX_FLAGS=${ARGN} ${consumer_flags}"
+                      -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF
+      --test-command sh -c
+        "./consumer && ./every_class > layout.txt && cmp layout.txt ../plain/layout.txt")
+  set_tests_properties(consumer.${name} PROPERTIES FIXTURES_REQUIRED vmech_installation)
+endfunction()
+
+vmech_add_consumer(plain -O2)
+vmech_add_consumer(avx2 -O2 -march=x86-64-v3)
+vmech_add_consumer(native -O2 -march=native)
+vmech_add_consumer(address_sanitizer -O1 -g1 -fsanitize=address)
+set_tests_properties(consumer.plain PROPERTIES FIXTURES_SETUP layout_of_plain)
+foreach(name avx2 native address_sanitizer)
+  set_tests_properties(consumer.${name} PROPERTIES
+    FIXTURES_REQUIRED "vmech_installation;layout_of_plain")
+endforeach()
+
+# A program with other settings of Eigen is told so.
+add_test(NAME consumer.refuses_other_settings_of_eigen
+  COMMAND ${CMAKE_CXX_COMPILER} -std=c++20 -fsyntax-only -I${consumer}/prefix/include
+          -isystem $<TARGET_PROPERTY:Eigen3::Eigen,INTERFACE_INCLUDE_DIRECTORIES>
+          ${CMAKE_CURRENT_LIST_DIR}/consumer.cc)
+set_tests_properties(consumer.refuses_other_settings_of_eigen PROPERTIES
+  FIXTURES_REQUIRED vmech_installation
+  PASS_REGULAR_EXPRESSION "must be what vmech was compiled with")

@@ -3,7 +3,7 @@
     every_class.py INCLUDE_FOLDER > every_class.cc
 
 The program includes every installed header in one file, makes each class that can be made without
-arguments on the stack, on the heap, in an array and in a vector that grows, and prints the size and
+arguments on the stack, on the heap and in a vector that grows, and prints the size and
 alignment of all of them: they must be the same whatever the flags it is compiled with.
 """
 

@@ -15,7 +15,6 @@ void Examine(const char* name) {
   if constexpr (std::is_default_constructible_v<T> && !std::is_abstract_v<T>) {
     T on_stack{};
     const auto on_heap = std::make_unique<T>();
-    const auto in_array = std::make_unique<T[]>(3);
     if constexpr (std::is_copy_constructible_v<T>) {
       std::vector<T> growing;
       for (int i = 0; i < 5; ++i) growing.push_back(i == 0 ? on_stack : *on_heap);

@@ -1,5 +1,6 @@
 // What must hold at every pose of every example, whatever the mechanism is.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 
 #include "driven_examples.h"
 #include "free_bodies.h"
+#include "vmech/dynamics/study_plausibility.h"
 
 namespace vmech {
 namespace {
@@ -41,6 +43,10 @@ class EveryDrivenExample : public testing::TestWithParam<DrivenExample> {
   const Mechanism& mechanism_;
   LoadStudyResult result_;
 };
+
+TEST_P(EveryDrivenExample, RaisesNoDoubt) {
+  EXPECT_THAT(DoubtsOf(study_, result_), testing::IsEmpty());
+}
 
 TEST_P(EveryDrivenExample, PowerBalances) {
   ASSERT_EQ(result_.poses.size(), study_.times.size());

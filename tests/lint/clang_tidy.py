@@ -20,7 +20,8 @@ from sources import ROOT, relative
 
 MODULES = ("mechanisms", "solvers", "kinematics", "dynamics", "comparison", "hw_interface",
            "apps")
-GCC_ALONE = re.compile(r" -m(move|store)-max=\d+")  # options that clang refuses
+# What clang refuses: options of g++, and headers that g++ has precompiled.
+GCC_ALONE = re.compile(r" -m(move|store)-max=\d+| -Winvalid-pch| -include \S+/cmake_pch\.hxx")
 INCLUDE = re.compile(r'^#include "vmech/([^"]+)"', re.MULTILINE)
 
 

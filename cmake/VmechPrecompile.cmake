@@ -1,0 +1,35 @@
+# Headers that nearly every source reads, parsed once: it halves the time of a first build. Sources
+# include what they use all the same. A compiler cache does better for later builds, and does not go
+# with it.
+
+option(VMECH_PRECOMPILE "parse the most used headers once" ${VMECH_PRECOMPILE_DEFAULT})
+set(vmech_common_headers
+  <Eigen/Cholesky> <Eigen/Core> <Eigen/Geometry> <algorithm> <array> <cmath> <cstdint> <filesystem>
+  <fmt/format.h> <functional> <limits> <memory> <optional> <span> <stdexcept> <string>
+  <string_view> <utility> <vector>)
+
+# vmech_add_precompiled(<name> HEADERS ... LIBS ...): headers precompiled for all targets with the
+# same options.
+function(vmech_add_precompiled name)
+  cmake_parse_arguments(ARG "" "" "HEADERS;LIBS" ${ARGN})
+  set(source ${PROJECT_BINARY_DIR}/precompiled/${name}.cc)
+  file(CONFIGURE OUTPUT ${source} CONTENT "")
+  add_library(vmech_precompiled_${name} OBJECT EXCLUDE_FROM_ALL ${source})
+  target_link_libraries(vmech_precompiled_${name} PRIVATE
+    Eigen3::Eigen fmt::fmt vmech_settings ${ARG_LIBS})
+  target_compile_definitions(vmech_precompiled_${name} PRIVATE
+    EIGEN_MAX_ALIGN_BYTES=64 EIGEN_MAX_STATIC_ALIGN_BYTES=16)
+  target_precompile_headers(vmech_precompiled_${name} PRIVATE ${vmech_common_headers}
+                            ${ARG_HEADERS})
+endfunction()
+
+# vmech_precompile(<target> <name>): the target reads the headers precompiled as <name>.
+function(vmech_precompile target name)
+  if(VMECH_PRECOMPILE)
+    target_precompile_headers(${target} REUSE_FROM vmech_precompiled_${name})
+  endif()
+endfunction()
+
+if(VMECH_PRECOMPILE)
+  vmech_add_precompiled(library LIBS vmech_kernel_settings)
+endif()

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "vmech/kinematics/kinematic_tree.h"
+
+namespace vmech {
+
+// What callers give along with a tree. `field` says what is looked at, as in "HandTracker: q".
+// @throws std::invalid_argument naming field, value and what it must be.
+
+/// Coordinates: [nq], finite.
+void RequireCoordinates(std::string_view field, const KinematicTree& tree, const VectorXd& q);
+/// Indices in v.
+void RequireVelocities(std::string_view field, const KinematicTree& tree,
+                       const std::vector<int>& indices);
+/// The index of a node; -1 is the ground.
+void RequireNode(std::string_view field, const KinematicTree& tree, int node);
+
+}  // namespace vmech
