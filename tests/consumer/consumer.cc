@@ -28,8 +28,10 @@ constexpr double kMass = 0.4, kArm = 0.05, kSpeed = 20, kGravity = 9.81;
 int failures = 0;
 
 void Expect(const char* what, double value, double expected, double tolerance) {
-  std::cout << what << ": " << value << ", expected " << expected << "\n";
-  if (!(std::abs(value - expected) <= tolerance)) ++failures;
+  const bool met = std::abs(value - expected) <= tolerance;
+  if (!met) ++failures;
+  std::cout << (met ? "  " : "MISSED ") << what << ": " << value << ", expected " << expected
+            << "\n";
 }
 
 vmech::Mechanism Pendulum() {
@@ -80,23 +82,25 @@ void Hold() {
   coupling.damping << 100, 100, 100, 0, 0, 0;
   vmech::CoupledDynamics coupled(tree, grasp, coupling, 1e-3, q);
   const vmech::Posed X_WH = coupled.X_WG();
+  int moved = 0;
   for (int i = 0; i < 3000; ++i) {
-    if (coupled.Step(X_WH, vmech::Vector6d::Zero()) != vmech::CoupledStatus::kMoved) ++failures;
+    moved += coupled.Step(X_WH, vmech::Vector6d::Zero()) == vmech::CoupledStatus::kMoved;
   }
+  Expect("steps", moved, 3000, 0);
   Expect("pull of the coupling [N]", coupled.w()[1], kMass * kGravity, 1e-3);
   Expect("stretch [m]", coupled.stretch().linear[1], kMass * kGravity / 1e4, 1e-5);
   MakeMany<vmech::CoupledDynamics>(tree, grasp, coupling, 1e-3, q);
 
   const vmech::Vector6d zero = vmech::Vector6d::Zero();
   vmech::HandDynamics hand(tree, grasp, coupling.stiffness, q);
-  if (!hand.Evaluate(zero, zero)) ++failures;
+  Expect("is evaluated", hand.Evaluate(zero, zero), true, 0);
   // About the pin: w_d is the least wrench that holds the weight.
   const double torque = hand.w_d()[1] * kArm + hand.w_d()[5];
-  Expect("torque of the hand [N m]", torque, kMass * kGravity * kArm, 1e-12);
+  Expect("torque of the hand [N m]", torque, kMass * kGravity * kArm, 1e-9);
   const auto on_heap = std::make_unique<vmech::HandDynamics>(tree, grasp, coupling.stiffness, q);
 
   vmech::HandTracker tracker(tree, grasp, q);
-  if (tracker.Advance(X_WH) != vmech::TrackStatus::kFollowed) ++failures;
+  Expect("is followed", tracker.Advance(X_WH) == vmech::TrackStatus::kFollowed, true, 0);
 }
 
 /// The device's own loop, observer, safety filter and recorder, for half a second.

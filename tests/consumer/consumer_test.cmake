@@ -14,13 +14,14 @@ add_test(NAME consumer.install
 set_tests_properties(consumer.install PROPERTIES FIXTURES_SETUP vmech_installation)
 
 function(vmech_add_consumer name)
+  list(JOIN ARGN " " flags)
   add_test(NAME consumer.${name}
     COMMAND ${CMAKE_CTEST_COMMAND}
       --build-and-test ${CMAKE_CURRENT_LIST_DIR} ${consumer}/${name}
       --build-generator ${CMAKE_GENERATOR}
       --build-options -DCMAKE_PREFIX_PATH=${consumer}/prefix
                       -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER}
-                      "-DCMAKE_CXX_FLAGS=${ARGN} ${consumer_flags}"
+                      "-DCMAKE_CXX_FLAGS=${flags} ${consumer_flags}"
                       -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF
       --test-command sh -c
         "./consumer && ./every_class > layout.txt && cmp layout.txt ../plain/layout.txt")
