@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "vmech/apps/dh_text.h"
+#include "vmech/mechanisms/freedoms.h"
 
 namespace vmech {
 namespace {
@@ -41,6 +42,10 @@ std::string Position(const KinematicTree& tree, const VectorXd& q, int joint) {
   for (const TreeNode& node : tree.nodes) {
     if (node.joint != joint || node.q < 0) continue;
     if (!text.empty()) text += ", ";
+    const JointType type = tree.mechanism.joints[joint].type;
+    if (FreedomsOf(type) > 1 && node.motion != NodeMotion::kSpherical) {
+      text += NameOfFreedom(type, node.freedom) + " ";
+    }
     if (node.motion == NodeMotion::kPrismatic) {
       text += fmt::format("{:.6g} mm", 1000 * q[node.q]);
     } else if (node.motion == NodeMotion::kSpherical) {
@@ -133,7 +138,9 @@ Json DhJson(const Mechanism& m, const DhTable& table) {
     entry["link_frame"] = row.link >= 0 && table.row_of_link[row.link] == static_cast<int>(i);
     entry["motion"] = kMotions[static_cast<int>(row.motion)];
     if (row.joint >= 0) entry["joint"] = m.joints[row.joint].name;
-    if (row.joint >= 0) entry["freedom"] = row.freedom;
+    if (row.joint >= 0) {
+      entry["freedom"] = NameOfFreedom(m.joints[row.joint].type, row.freedom);
+    }
     if (row.motion == DhMotion::kScrew) entry["pitch"] = row.pitch;
     const DhParameters& p = row.parameters;
     entry.update({{"theta", p.theta}, {"d", p.d}, {"a", p.a}, {"alpha", p.alpha}});
@@ -159,7 +166,7 @@ MechanismCheck CheckMechanism(const Mechanism& mechanism) {
   return check;
 }
 
-std::string TextReport(const MechanismCheck& check) {
+std::string TextReport(const MechanismCheck& check, bool dh) {
   const Mechanism& m = check.tree.mechanism;
   std::string text = fmt::format("{}\n\n", m.name) + LinkLines(m) + JointLines(check);
   text += LoopLines(check.tree);
@@ -177,10 +184,10 @@ std::string TextReport(const MechanismCheck& check) {
     text += fmt::format("grasp       {} on {}, {}\n", grasp.name, m.links[grasp.link].name,
                         grasp.kind == GraspKind::kRigid ? "rigid" : "point");
   }
-  return text + "\n" + DhText(m, check.dh);
+  return dh ? text + "\n" + DhText(m, check.dh) : text;
 }
 
-std::string JsonReport(const MechanismCheck& check) {
+std::string JsonReport(const MechanismCheck& check, bool dh) {
   const Mechanism& m = check.tree.mechanism;
   Json json{{"mechanism", m.name}, {"ground", m.links[m.ground].name}};
   for (const Link& link : m.links) {
@@ -216,7 +223,7 @@ std::string JsonReport(const MechanismCheck& check) {
     json["singular_start"] = check.mobility.singular_here;
     json["notes"] = check.assembled.Notes();
   }
-  json["denavit_hartenberg"] = DhJson(m, check.dh);
+  if (dh) json["denavit_hartenberg"] = DhJson(m, check.dh);
   return json.dump(2) + "\n";
 }
 

@@ -21,10 +21,10 @@ struct MechanismCheck {
 
 MechanismCheck CheckMechanism(const Mechanism& mechanism);
 
-/// A page for a terminal: links, joints, loops and cuts, mobility, redundancy, closure, and the
-/// Denavit-Hartenberg parameters.
-std::string TextReport(const MechanismCheck& check);
+/// A page for a terminal: links, joints, loops and cuts, mobility, redundancy, closure, and if they
+/// are asked for the Denavit-Hartenberg parameters.
+std::string TextReport(const MechanismCheck& check, bool dh);
 /// The same for programs.
-std::string JsonReport(const MechanismCheck& check);
+std::string JsonReport(const MechanismCheck& check, bool dh);
 
 }  // namespace vmech

@@ -15,15 +15,17 @@ enum ExitCode {
   kBadUsage = 1,    ///< the command line
   kBadInput = 2,    ///< a file that cannot be read, or contradicts itself
   kNoSolution = 3,  ///< loops that do not close, motion that cannot be followed
-  kNotMet = 4,      ///< done, but a joint has no bearing in the catalogue that meets what is asked
+  kNotMet = 4,      ///< done, but no bearings of the catalogue do at a joint what is asked of them
   kInternalError = 5  ///< a fault of vmech
 };
 
 struct CheckArguments {
-  std::filesystem::path mechanism;
-  std::optional<double> tolerance;  ///< instead of the mechanism's own
+  std::vector<std::filesystem::path> mechanisms;  ///< one or several
+  std::optional<double> tolerance;                ///< instead of the mechanism's own
   bool json = false;
+  bool dh = false;  ///< the Denavit-Hartenberg rows as well
 };
+/// Checks every file; returns the greatest of their exit codes.
 int RunCheck(const CheckArguments& arguments);
 
 struct LoadsArguments {

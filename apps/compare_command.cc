@@ -14,7 +14,9 @@
 #include "vmech/apps/compare/run_comparison.h"
 #include "vmech/apps/compare/suite_reader.h"
 #include "vmech/apps/compare/summary_json.h"
+#include "vmech/apps/file_kind.h"
 #include "vmech/apps/mpi_session.h"
+#include "vmech/apps/option_error.h"
 #include "vmech/apps/output_folder.h"
 #include "vmech/apps/progress_bar.h"
 #include "vmech/comparison/statistics.h"
@@ -37,9 +39,8 @@ std::vector<Contestant> SolversNamed(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     const std::optional<Contestant> solver = ContestantFromName(name);
     if (!solver) {
-      throw std::invalid_argument(fmt::format("--solvers: {} is no solver{}; there are {}",
-                                              Quoted(name), DidYouMean(name, known),
-                                              fmt::join(known, ", ")));
+      throw OptionError(fmt::format("--solvers: {} is no solver{}; there are {}", Quoted(name),
+                                    DidYouMean(name, known), fmt::join(known, ", ")));
     }
     solvers.push_back(*solver);
   }
@@ -47,23 +48,6 @@ std::vector<Contestant> SolversNamed(const std::vector<std::string>& names) {
   std::sort(solvers.begin(), solvers.end());
   solvers.erase(std::unique(solvers.begin(), solvers.end()), solvers.end());
   return solvers;
-}
-
-Suite ReadOrRedirect(const std::filesystem::path& path) {
-  try {
-    return ReadSuite(path);
-  } catch (const FileErrors& errors) {
-    const auto has = [&](std::string_view key) {
-      return std::any_of(
-          errors.errors().begin(), errors.errors().end(),
-          [&](const FileError& error) { return error.path == key && error.file == path; });
-    };
-    if (!has("vmech") && !has("vmech_study")) throw;
-    throw FileErrors(path.string(),
-                     fmt::format("is a {}; `vmech compare` takes a suite, which names mechanisms "
-                                 "and targets (docs/suite-format.md)",
-                                 has("vmech") ? "mechanism" : "study"));
-  }
 }
 
 /// Finds out before anything runs whether every mechanism can be assembled.
@@ -92,7 +76,7 @@ void PrintSummary(const Suite& suite, const std::vector<Result>& results,
 }
 
 int Compare(const CompareArguments& arguments, MpiSession* mpi) {
-  const Suite suite = ReadOrRedirect(arguments.suite);
+  const Suite suite = ReadAs({"compare", {FileKind::kSuite}}, arguments.suite, ReadSuite);
   const std::vector<Contestant> solvers = SolversNamed(arguments.solvers);
   CheckMechanisms(suite);
   const Work work = ComparisonWork(suite);

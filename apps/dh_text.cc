@@ -7,6 +7,8 @@
 #include <numbers>
 #include <vector>
 
+#include "vmech/mechanisms/freedoms.h"
+
 namespace vmech {
 namespace {
 
@@ -30,8 +32,7 @@ std::string Angle(double value) {
 std::string Moving(const Mechanism& mechanism, const DhRow& row) {
   if (row.motion == DhMotion::kFixed) return "-";
   const Joint& joint = mechanism.joints[row.joint];
-  const std::string name =
-      FreedomsOf(joint.type) == 1 ? joint.name : fmt::format("{}.{}", joint.name, row.freedom + 1);
+  const std::string name = NameOfFreedom(joint, row.freedom);
   switch (row.motion) {
     case DhMotion::kTranslation:
       return name + ": d";

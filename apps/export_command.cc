@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include "vmech/apps/commands.h"
+#include "vmech/apps/file_kind.h"
+#include "vmech/apps/option_error.h"
 #include "vmech/apps/output_folder.h"
 #include "vmech/kinematics/assembled_mechanism.h"
 #include "vmech/mechanisms/denavit_hartenberg.h"
@@ -23,15 +25,17 @@ ExportedText Exported(const Mechanism& mechanism, const ExportArguments& argumen
   if (ending == ".sdf") return WriteSdf(RequireAssembled(mechanism).mechanism);
   if (ending == ".xml" || ending == ".mjcf")
     return WriteMjcf(RequireAssembled(mechanism).mechanism);
-  throw FileErrors(arguments.out.string(),
-                   "what is written goes by the ending: .sdf (SDFormat), .xml or .mjcf (MuJoCo), "
-                   ".yaml (vmech)");
+  throw OptionError(fmt::format(
+      "--out: the ending of {} does not say what to write: .sdf (SDFormat), .xml or .mjcf "
+      "(MuJoCo), .yaml (vmech)",
+      Quoted(arguments.out.string())));
 }
 
 }  // namespace
 
 int RunExport(const ExportArguments& arguments) {
-  Mechanism mechanism = ReadMechanism(arguments.mechanism);
+  Mechanism mechanism =
+      ReadAs({"export", {FileKind::kMechanism}}, arguments.mechanism, ReadMechanism);
   if (arguments.tolerance) mechanism.tolerance = *arguments.tolerance;
   if (arguments.dh_frames) {
     mechanism = DrawnInLinkFrames(mechanism, DeduceDhTable(mechanism, FindSpanningTree(mechanism)));

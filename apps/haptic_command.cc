@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "vmech/apps/commands.h"
+#include "vmech/apps/file_kind.h"
 #include "vmech/apps/haptic_session.h"
 #include "vmech/hw_interface/replay_master.h"
 #include "vmech/hw_interface/runner.h"
@@ -161,18 +162,22 @@ int Hold(const HeldMechanism& held, HapticArguments arguments, Master* master) {
     const StatusLine line(runner, arguments.quiet);
     summary = runner.Run();
   }
-  if (!arguments.record.empty()) WriteRecording(arguments.record, runner.Kept());
+  if (!arguments.record.empty()) {
+    UsingFile("--record", [&] { WriteRecording(arguments.record, runner.Kept()); });
+  }
   if (!arguments.quiet) fmt::print("{}{}", summary.FullReport(), rendering.tick->FullReport());
   return summary.status == RunStatus::kFault ? kNoSolution : kSuccess;
 }
 
-/// @throws std::invalid_argument: a recording that cannot be read is bad input.
+/// @throws FileErrors: a recording that cannot be read is bad input.
 Recording ReadInput(const std::filesystem::path& file) {
-  try {
-    return ReadRecording(file);
-  } catch (const std::runtime_error& error) {
-    throw std::invalid_argument(error.what());
-  }
+  return ReadAs({"replay", {FileKind::kRecording}}, file, [](const std::filesystem::path& path) {
+    try {
+      return ReadRecording(path);
+    } catch (const std::runtime_error& error) {
+      throw FileErrors({{error.what(), 0, 0, "", "a recording of `vmech haptic` is wanted"}});
+    }
+  });
 }
 
 /// The arguments that made a recording. @throws std::invalid_argument if it does not say.

@@ -1,6 +1,7 @@
 #include "vmech/apps/haptic_session.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -8,6 +9,8 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "vmech/apps/file_kind.h"
+#include "vmech/apps/option_error.h"
 #include "vmech/apps/study_reader.h"
 #include "vmech/hw_interface/coupling_choice.h"
 #include "vmech/hw_interface/plugin_master.h"
@@ -20,19 +23,6 @@
 
 namespace vmech {
 namespace {
-
-bool IsStudy(const std::filesystem::path& file) {
-  try {
-    ReadMechanism(file.string());
-    return false;
-  } catch (const FileErrors& errors) {
-    const bool study =
-        std::any_of(errors.errors().begin(), errors.errors().end(),
-                    [](const FileError& error) { return error.path == "vmech_study"; });
-    if (!study) throw;
-    return true;
-  }
-}
 
 HapticSubject ReadHeldStudy(const std::filesystem::path& file) {
   StudyFile study = ReadStudy(file);
@@ -96,7 +86,7 @@ std::unique_ptr<Master> MakeUdp(const std::string& address) {
   const auto [end, error] =
       std::from_chars(port.data(), port.data() + port.size(), options.device.port);
   if (error != std::errc{} || end != port.data() + port.size()) {
-    throw std::invalid_argument(fmt::format("master 'udp:{}': udp:HOST:PORT expected", address));
+    throw OptionError(fmt::format("--master: udp:HOST:PORT is meant, not 'udp:{}'", address));
   }
   return std::make_unique<UdpMaster>(options);
 }
@@ -146,17 +136,23 @@ Rendering MakeRendering(const RenderingRequest& request, const KinematicTree& tr
 
 HapticSubject ReadSubject(const std::filesystem::path& file, const std::string& grasp) {
   HapticSubject subject =
-      IsStudy(file) ? ReadHeldStudy(file) : HapticSubject{ReadMechanism(file.string()), 0, {}};
+      KindOfFile(file) == FileKind::kStudy
+          ? ReadHeldStudy(file)
+          : HapticSubject{
+                ReadAs({"haptic", {FileKind::kMechanism, FileKind::kStudy}}, file, ReadMechanism),
+                0,
+                {}};
   if (!grasp.empty()) subject.grasp = FindGrasp(subject.mechanism, grasp);
   if (subject.grasp >= 0 && subject.grasp < static_cast<int>(subject.mechanism.grasps.size())) {
     return subject;
   }
-  std::string names;
-  for (const Grasp& g : subject.mechanism.grasps) names += (names.empty() ? "" : ", ") + g.name;
-  throw FileErrors(file.string(), grasp.empty()
-                                      ? "no grasps: give the mechanism one (docs/file-format.md)"
-                                      : fmt::format("grasp '{}' not found; there are: {}", grasp,
-                                                    names.empty() ? "none" : names));
+  std::vector<std::string> names;
+  for (const Grasp& g : subject.mechanism.grasps) names.push_back(g.name);
+  if (names.empty()) {
+    throw FileErrors(file.string(), "no grasps: give the mechanism one (docs/file-format.md)");
+  }
+  throw OptionError(fmt::format("--grasp: there is no grasp {}{}; there are {}", Quoted(grasp),
+                                DidYouMean(grasp, names), fmt::join(names, ", ")));
 }
 
 Matrix3d DeviceAxes(const Mechanism& mechanism) {
@@ -171,8 +167,8 @@ Grip ParseGrip(const std::string& word) {
   if (word == "light") return Grip::kLight;
   if (word == "relaxed") return Grip::kRelaxed;
   if (word == "firm") return Grip::kFirm;
-  throw std::invalid_argument(
-      fmt::format("grip '{}' is not one of absent, light, relaxed, firm", word));
+  throw OptionError(
+      fmt::format("--grip: {} is not one of absent, light, relaxed, firm", Quoted(word)));
 }
 
 std::unique_ptr<Master> MakeMaster(const MasterRequest& request) {
@@ -180,19 +176,21 @@ std::unique_ptr<Master> MakeMaster(const MasterRequest& request) {
   if (word == "simulated") return MakeSimulated(request);
   if (word == "spacenav") return std::make_unique<SpacenavMaster>();
   if (const auto file = Behind(word, "replay:")) {
-    return std::make_unique<ReplayMaster>(ReadRecording(*file));
+    return std::make_unique<ReplayMaster>(
+        UsingFile("--master", [&] { return ReadRecording(*file); }));
   }
   if (const auto address = Behind(word, "udp:")) return MakeUdp(*address);
   if (const auto library = Behind(word, "plugin:")) {
     const std::size_t colon = library->find(':');
-    return std::make_unique<PluginMaster>(
-        library->substr(0, colon),
-        colon == std::string::npos ? std::string() : library->substr(colon + 1));
+    const std::string parameters = colon == std::string::npos ? "" : library->substr(colon + 1);
+    return UsingFile("--master", [&] {
+      return std::make_unique<PluginMaster>(library->substr(0, colon), parameters);
+    });
   }
-  throw std::invalid_argument(
-      fmt::format("master '{}' is not one of simulated, spacenav, replay:FILE, udp:HOST:PORT, "
+  throw OptionError(
+      fmt::format("--master: {} is not one of simulated, spacenav, replay:FILE, udp:HOST:PORT, "
                   "plugin:LIBRARY[:PARAMETERS]",
-                  word));
+                  Quoted(word)));
 }
 
 void WriteHandMotion(const std::filesystem::path& file, const Recording& recording,
@@ -216,7 +214,7 @@ void WriteHandMotion(const std::filesystem::path& file, const Recording& recordi
                        X_WH.p.z(), turn.w(), turn.x(), turn.y(), turn.z());
   }
   if (!out.flush()) {
-    throw std::runtime_error(fmt::format("{}: cannot be written", file.string()));
+    throw FileErrors(file.string(), "cannot be written; give another place with --motion");
   }
 }
 

@@ -3,7 +3,9 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "vmech/hw_interface/coupled_tick.h"
 #include "vmech/hw_interface/mechanism_tick.h"
@@ -21,18 +23,29 @@ struct HapticSubject {
 
 /// Reads a mechanism, or a study that a hand moves. `grasp` by name; empty: the study's, or the
 /// first.
-/// @throws FileErrors naming the file and what is wrong.
+/// @throws FileErrors naming the file and what is wrong; OptionError for an unknown grasp.
 HapticSubject ReadSubject(const std::filesystem::path& file, const std::string& grasp);
 
 /// How the device's axes lie in the world: its z against gravity (along z if there is none).
 Matrix3d DeviceAxes(const Mechanism& mechanism);
 
-/// "absent", "light", "relaxed" or "firm". @throws std::invalid_argument.
+/// Does something with a file that an option names, whose faults are those of a file.
+/// @throws std::invalid_argument instead of std::runtime_error.
+template <typename Use>
+auto UsingFile(std::string_view option, Use use) {
+  try {
+    return use();
+  } catch (const std::runtime_error& error) {
+    throw std::invalid_argument(std::string(option) + ": " + error.what());
+  }
+}
+
+/// "absent", "light", "relaxed" or "firm". @throws OptionError.
 Grip ParseGrip(const std::string& word);
 
 /// The master that a word stands for: simulated, spacenav, replay:FILE, udp:HOST:PORT or
 /// plugin:LIBRARY[:PARAMETERS]. The simulated operator holds the mechanism at X_WG.
-/// @throws std::invalid_argument for any other word.
+/// @throws OptionError for any other word, std::invalid_argument for a file that cannot be used.
 struct MasterRequest {
   std::string word;
   double rate = 1000;
@@ -47,7 +60,7 @@ std::unique_ptr<Master> MakeMaster(const MasterRequest& request);
 /// The hand of a recording in the world as a table t, x, y, z, qw, qx, qy, qz for a study's
 /// `motion: {grasp: .., table: ..}` in metres, from the first sample on; the hand took hold at
 /// X_WG.
-/// @throws std::runtime_error if the file cannot be written.
+/// @throws FileErrors if the file cannot be written.
 void WriteHandMotion(const std::filesystem::path& file, const Recording& recording,
                      const Matrix3d& R_WD, const Posed& X_WG);
 

@@ -1,18 +1,22 @@
 #include "vmech/apps/ik.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "vmech/apps/file_kind.h"
+#include "vmech/apps/option_error.h"
 #include "vmech/kinematics/assembled_mechanism.h"
 #include "vmech/kinematics/closure.h"
 #include "vmech/kinematics/forward_kinematics.h"
 #include "vmech/kinematics/hand_tracker.h"
 #include "vmech/kinematics/loops.h"
 #include "vmech/kinematics/unseen_motions.h"
+#include "vmech/mechanisms/freedoms.h"
 #include "vmech/mechanisms/reader.h"
 
 namespace vmech {
@@ -34,7 +38,7 @@ std::vector<double> Numbers(const std::string& option, const std::string& text) 
     } else if (!word.empty()) {
       const std::optional<double> number = ParseNumber(word);
       if (!number) {
-        throw std::invalid_argument(
+        throw OptionError(
             fmt::format("{}: {} is not a number; give numbers with blanks between them, as in "
                         "{} \"0.1 0.2 0\"",
                         option, Quoted(word), option));
@@ -55,47 +59,75 @@ void ReadFileUnits(const std::filesystem::path& path, IkAnswer* answer) {
   answer->angle_unit = units["angle"].Text("rad");
 }
 
-int GraspIndex(const Mechanism& mechanism, const std::string& name) {
+int GraspIndex(const Mechanism& mechanism, const IkQuestion& question) {
+  const std::string& name = question.grasp;
   std::vector<std::string> names;
   for (const Grasp& grasp : mechanism.grasps) names.push_back(grasp.name);
   if (names.empty()) {
-    throw std::invalid_argument(
-        "the mechanism has no grasp to hold it by; add one to the file under `grasps`");
+    throw FileErrors(question.mechanism.string(),
+                     "has no grasp by which to hold the mechanism; add one under `grasps`");
   }
   if (name.empty()) return 0;
   const int index = FindGrasp(mechanism, name);
   if (index >= 0) return index;
-  throw std::invalid_argument(
+  throw OptionError(
       fmt::format("--grasp: there is no grasp {}{}", Quoted(name), DidYouMean(name, names)));
 }
 
-/// "joint=value" in SI.
+/// "joint=value" or "joint.freedom=value" in SI.
 struct StartValue {
-  int joint;
+  int joint, freedom;
   double value;
 };
 
-StartValue ReadStart(const Mechanism& mechanism, const Units& units, const std::string& text) {
-  const size_t equals = text.find('=');
-  const std::string name = text.substr(0, equals);
+/// The freedoms that `--start` can name: "pin", "tube.rz".
+std::vector<std::string> NamesOfStarts(const Mechanism& mechanism) {
+  std::vector<std::string> names;
+  for (const Joint& joint : mechanism.joints) {
+    if (joint.type == JointType::kSpherical) continue;
+    for (int k = 0; k < FreedomsOf(joint.type); ++k) names.push_back(NameOfFreedom(joint, k));
+  }
+  return names;
+}
+
+/// The joint and the freedom of a name; the value is not yet known.
+StartValue FindStart(const Mechanism& mechanism, const std::string& name) {
+  for (size_t j = 0; j < mechanism.joints.size(); ++j) {
+    const Joint& joint = mechanism.joints[j];
+    if (joint.type == JointType::kSpherical) continue;
+    for (int k = 0; k < FreedomsOf(joint.type); ++k) {
+      if (NameOfFreedom(joint, k) == name) return {static_cast<int>(j), k, 0};
+    }
+  }
   const int joint = FindJoint(mechanism, name);
   if (joint < 0) {
-    std::vector<std::string> names;
-    for (const Joint& j : mechanism.joints) names.push_back(j.name);
-    throw std::invalid_argument(
-        fmt::format("--start: there is no joint {}{}", Quoted(name), DidYouMean(name, names)));
+    throw OptionError(fmt::format("--start: there is no joint {}{}", Quoted(name),
+                                  DidYouMean(name, NamesOfStarts(mechanism))));
   }
   const JointType type = mechanism.joints[joint].type;
-  const bool single = FreedomsOf(type) == 1;
+  throw OptionError(
+      type == JointType::kSpherical
+          ? fmt::format("--start: joint {} is spherical; state where it starts in the file",
+                        Quoted(name))
+          : fmt::format("--start: a {} joint has {}; name the one that is meant, as in --start "
+                        "{}.{}=30",
+                        NameOf(type), fmt::join(NamesOfFreedoms(type), ", "), name,
+                        NamesOfFreedoms(type).empty() ? "" : NameOfFreedom(type, 0)));
+}
+
+StartValue ReadStart(const Mechanism& mechanism, const Units& units, const std::string& text) {
+  const size_t equals = text.find('=');
+  StartValue start = FindStart(mechanism, text.substr(0, equals));
   const std::vector<double> value = equals == std::string::npos
                                         ? std::vector<double>()
                                         : Numbers("--start", text.substr(equals + 1));
-  if (!single || value.size() != 1) {
-    throw std::invalid_argument(fmt::format(
-        "--start: {} {}; give a joint with one freedom and its value, as in --start joint=30",
-        Quoted(text), single ? "has no single value" : "names a joint with several freedoms"));
+  if (value.size() != 1) {
+    throw OptionError(fmt::format(
+        "--start: {} has no single value; give one, as in --start joint=30", Quoted(text)));
   }
-  return {joint, value[0] * (type == JointType::kPrismatic ? units.length : units.angle)};
+  const bool rotates = FreedomsOfType(mechanism.joints[start.joint].type).rotates[start.freedom];
+  start.value = value[0] * (rotates ? units.angle : units.length);
+  return start;
 }
 
 /// Joints with a given start, and those with limits as far as that is possible, stay whole: a
@@ -128,8 +160,11 @@ Mechanism AssembledAt(Mechanism mechanism, const std::vector<StartValue>& start,
                       std::vector<std::string>* warnings) {
   AssembleOptions options;
   for (const StartValue& value : start) {
-    mechanism.joints[value.joint].start = {value.value};
-    options.fixed_joints.push_back(value.joint);
+    Joint& joint = mechanism.joints[value.joint];
+    joint.start[value.freedom] = value.value;
+    joint.start_given = true;
+    // The other freedoms of a joint with several follow, and with them, if it must be, this one.
+    if (FreedomsOf(joint.type) == 1) options.fixed_joints.push_back(value.joint);
   }
   const AssembledMechanism assembled = RequireAssembled(mechanism, options);
   const std::vector<std::string> notes = assembled.Notes();
@@ -140,7 +175,7 @@ Mechanism AssembledAt(Mechanism mechanism, const std::vector<StartValue>& start,
 Posed ReadTarget(const std::string& text, const Units& units, const Posed& X_WG_start) {
   const std::vector<double> n = Numbers("--target", text);
   if (n.size() != 3 && n.size() != 6 && n.size() != 7) {
-    throw std::invalid_argument(fmt::format(
+    throw OptionError(fmt::format(
         "--target has {} numbers; give a position \"x y z\", with a rotation vector \"x y z rx ry "
         "rz\" or with a quaternion \"x y z qw qx qy qz\"",
         n.size()));
@@ -153,7 +188,7 @@ Posed ReadTarget(const std::string& text, const Units& units, const Posed& X_WG_
   } else if (n.size() == 7) {
     const Eigen::Quaterniond quaternion(n[3], n[4], n[5], n[6]);
     if (!(quaternion.norm() > 0)) {
-      throw std::invalid_argument("--target: the quaternion is zero; (1, 0, 0, 0) is no rotation");
+      throw OptionError("--target: the quaternion is zero; (1, 0, 0, 0) is no rotation");
     }
     X_WH.R = quaternion.normalized().toRotationMatrix();
   }
@@ -167,11 +202,16 @@ InverseKinematicsOptions ReadOptions(const IkQuestion& question) {
   if (question.stiffness.empty()) return options;
   const std::vector<double> k = Numbers("--stiffness", question.stiffness);
   if (k.size() != 6) {
-    throw std::invalid_argument(fmt::format(
+    throw OptionError(fmt::format(
         "--stiffness has {} numbers; give six, N/m along x, y, z and N m/rad about them",
         k.size()));
   }
   options.stiffness = Eigen::Map<const Vector6d>(k.data());
+  try {
+    options.Validate();
+  } catch (const std::invalid_argument& error) {
+    throw OptionError(fmt::format("--stiffness: {}", error.what()));
+  }
   return options;
 }
 
@@ -184,8 +224,8 @@ Backend ReadSolver(const std::string& name) {
     names.emplace_back(NameOf(b));
     all += (all.empty() ? "" : ", ") + names.back();
   }
-  throw std::invalid_argument(fmt::format("--solver: there is no solver {}{}; there are {}",
-                                          Quoted(name), DidYouMean(name, names), all));
+  throw OptionError(fmt::format("--solver: there is no solver {}{}; there are {}", Quoted(name),
+                                DidYouMean(name, names), all));
 }
 
 /// Largest distance of a link between two poses of the mechanism.
@@ -241,11 +281,11 @@ void ReportLoops(const KinematicTree& tree, InverseKinematics& problem, IkAnswer
 
 IkAnswer AnswerIk(const IkQuestion& question) {
   IkAnswer answer;
-  Mechanism mechanism = ReadMechanism(question.mechanism);
+  Mechanism mechanism = ReadAs({"ik", {FileKind::kMechanism}}, question.mechanism, ReadMechanism);
   ReadFileUnits(question.mechanism, &answer);
   const Backend backend = ReadSolver(question.solver);
   const InverseKinematicsOptions options = ReadOptions(question);
-  const int grasp = GraspIndex(mechanism, question.grasp);
+  const int grasp = GraspIndex(mechanism, question);
   answer.grasp = mechanism.grasps[grasp];
   std::vector<StartValue> start;
   for (const std::string& text : question.start) {

@@ -16,7 +16,7 @@ struct IkQuestion {
   std::filesystem::path mechanism;
   std::string target;              ///< "x y z", "x y z rx ry rz" or "x y z qw qx qy qz"
   std::string grasp;               ///< name; empty: the file's first
-  std::vector<std::string> start;  ///< "joint=value"
+  std::vector<std::string> start;  ///< "joint=value" or "joint.freedom=value"
   std::string stiffness;           ///< six numbers, SI; empty: the default
   std::string solver = "nullspace";
   bool paper_rotation = false;  ///< the rotation error of paper eq. (3)

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "vmech/apps/ik.h"
+#include "vmech/mechanisms/freedoms.h"
 
 namespace vmech {
 namespace {
@@ -88,6 +89,10 @@ std::string JointValue(const IkAnswer& answer, size_t joint) {
   for (const TreeNode& node : answer.tree.nodes) {
     if (node.joint != static_cast<int>(joint) || node.q < 0) continue;
     if (!text.empty()) text += ", ";
+    const Joint& of = answer.tree.mechanism.joints[joint];
+    if (FreedomsOf(of.type) > 1 && node.motion != NodeMotion::kSpherical) {
+      text += NameOfFreedom(of.type, node.freedom) + " ";
+    }
     const double value = answer.summary.x[node.q];
     if (node.motion == NodeMotion::kSpherical) {
       const auto q = answer.summary.x.segment<4>(node.q);
@@ -137,6 +142,13 @@ Json Numbers(const Vector3d& v) {
 Json PoseJson(const Posed& X) {
   const Eigen::Quaterniond q(X.R);
   return {{"position", Numbers(X.p)}, {"quaternion", {q.w(), q.x(), q.y(), q.z()}}};
+}
+
+/// "rz", or for a ball "qw".
+std::string NameOfCoordinate(const Joint& joint, const TreeNode& node, int k) {
+  constexpr const char* kQuaternion[] = {"qw", "qx", "qy", "qz"};
+  if (node.motion == NodeMotion::kSpherical) return kQuaternion[k];
+  return NameOfFreedom(joint.type, node.freedom);
 }
 
 }  // namespace
@@ -195,14 +207,16 @@ std::string JsonReport(const IkAnswer& answer) {
       {"bias_bound", s.bias_bound},
       {"stiffness", std::vector<double>(answer.stiffness.begin(), answer.stiffness.end())}};
   for (size_t j = 0; j < m.joints.size(); ++j) {
-    Json values = Json::array();
+    Json values = Json::array(), names = Json::array();
     for (const TreeNode& node : answer.tree.nodes) {
       if (node.joint != static_cast<int>(j) || node.q < 0) continue;
       const int count = node.motion == NodeMotion::kSpherical ? 4 : 1;
       for (int k = 0; k < count; ++k) values.push_back(s.x[node.q + k]);
+      for (int k = 0; k < count; ++k) names.push_back(NameOfCoordinate(m.joints[j], node, k));
     }
     json["joints"].push_back({{"name", m.joints[j].name},
                               {"cut", answer.tree.placements[j].tree_node < 0},
+                              {"coordinates", names},
                               {"values", values}});
   }
   json["loops"] = Json::array();

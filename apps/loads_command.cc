@@ -5,14 +5,18 @@
 #include <thread>
 
 #include "vmech/apps/commands.h"
+#include "vmech/apps/file_kind.h"
 #include "vmech/apps/output_folder.h"
 #include "vmech/apps/progress_bar.h"
+#include "vmech/apps/report/cycle.h"
 #include "vmech/apps/report/joint_section.h"
 #include "vmech/apps/report/load_report.h"
 #include "vmech/apps/study.h"
 #include "vmech/apps/study_reader.h"
 #include "vmech/apps/tables.h"
 #include "vmech/dynamics/bearings/rating.h"
+#include "vmech/dynamics/open_components.h"
+#include "vmech/mechanisms/number_text.h"
 
 namespace vmech {
 namespace {
@@ -20,24 +24,6 @@ namespace {
 int Threads(const LoadsArguments& arguments) {
   if (arguments.threads > 0) return arguments.threads;
   return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 64);
-}
-
-StudyFile ReadOrRedirect(const std::filesystem::path& path) {
-  try {
-    return ReadStudy(path);
-  } catch (const FileErrors& errors) {
-    const bool mechanism = std::any_of(
-        errors.errors().begin(), errors.errors().end(),
-        [&](const FileError& error) { return error.path == "vmech" && error.file == path; });
-    const bool suite = std::any_of(
-        errors.errors().begin(), errors.errors().end(),
-        [&](const FileError& error) { return error.path == "vmech_suite" && error.file == path; });
-    if (suite) throw FileErrors(path.string(), "is a suite; `vmech compare` runs it");
-    if (!mechanism) throw;
-    throw FileErrors(path.string(),
-                     "is a mechanism; `vmech check` reads it, `vmech loads` takes a study that "
-                     "names it (docs/study-format.md)");
-  }
 }
 
 /// RunStudy, whose errors name the study.
@@ -61,10 +47,11 @@ std::string Components(const JointCertainty& certainty, Certainty verdict) {
   return names;
 }
 
-std::string CertaintyInWords(const JointCertainty& certainty) {
+std::string CertaintyInWords(const LoadStudyResult& loads, size_t joint) {
+  const JointCertainty matters = VerdictsThatMatter(loads, joint);
   std::string words;
   for (const Certainty verdict : {Certainty::kNotDetermined, Certainty::kSingular}) {
-    const std::string components = Components(certainty, verdict);
+    const std::string components = Components(matters, verdict);
     if (components.empty()) continue;
     words += fmt::format("{}{}{}", words.empty() ? "" : "; ", NameOf(verdict), components);
   }
@@ -77,22 +64,23 @@ std::string JointLines(const StudyFile& file, const LoadStudyResult& loads) {
   for (const Joint& joint : joints) width = std::max(width, joint.name.size());
   std::string text = fmt::format("  {:<{}} {:>11} {:>11} {:>14}   statics\n", "largest loads",
                                  width, "radial [N]", "axial [N]", "tilting [N m]");
-  const double negligible = Negligible(loads);
-  const auto shown = [negligible](double value) { return value <= negligible ? 0.0 : value; };
+  const auto shown = [negligible = Negligible(loads)](double value) {
+    return FormatLoad(value, negligible);
+  };
   for (size_t j = 0; j < joints.size(); ++j) {
     const JointPeaks peaks = PeaksOf(loads, j);
-    text += fmt::format("  {:<{}} {:>11.4g} {:>11.4g} {:>14.4g}   {}\n", joints[j].name, width,
+    text += fmt::format("  {:<{}} {:>11} {:>11} {:>14}   {}\n", joints[j].name, width,
                         shown(peaks.radial), shown(peaks.axial), shown(peaks.tilting),
-                        CertaintyInWords(loads.certainty[j]));
+                        CertaintyInWords(loads, j));
   }
   return text;
 }
 
 std::string RuleLine(const StudyFile& file, const LoadStudyResult& loads) {
-  const bool open = std::any_of(loads.certainty.begin(), loads.certainty.end(),
-                                [](const JointCertainty& certainty) {
-                                  return !Components(certainty, Certainty::kNotDetermined).empty();
-                                });
+  bool open = false;
+  for (size_t j = 0; j < loads.certainty.size(); ++j) {
+    open |= !Components(VerdictsThatMatter(loads, j), Certainty::kNotDetermined).empty();
+  }
   if (!open) return "";
   return fmt::format("  what statics does not determine follows the rule '{}'\n",
                      NameOf(file.study.rule));
@@ -107,14 +95,17 @@ std::string BearingLines(const StudyFile& file, const BearingRequest& request,
           ? fmt::format(", for loads that follow the rule '{}'", NameOf(file.study.rule))
           : "");
   for (size_t k = 0; k < bearings.selections.size(); ++k) {
-    text += fmt::format("  at {:>5g} mm  {}\n", 1000 * request.arrangement.positions[k],
-                        bearings.selections[k].message);
+    text +=
+        fmt::format("  at {:>5} mm  {}\n", FormatShort(1000 * request.arrangement.positions[k], 3),
+                    bearings.selections[k].message);
     for (const std::string& warning : bearings.selections[k].warnings) {
       text += fmt::format("               warning: {}\n", warning);
     }
   }
   if (bearings.complete() && bearings.selections.size() > 1) {
-    text += fmt::format("  both         life {}\n", FormatHours(bearings.system_life_hours));
+    text +=
+        fmt::format("  both         life {} of {}{}\n", FormatHours(bearings.system_life_hours),
+                    FormatHours(bearings.asked_system_life), bearings.met() ? "" : ": TOO SHORT");
   }
   return text;
 }
@@ -122,6 +113,8 @@ std::string BearingLines(const StudyFile& file, const BearingRequest& request,
 void PrintSummary(const StudyFile& file, const StudyOutcome& outcome, const OutputFolder& folder) {
   fmt::print("{}: {}\n{}\n", file.name, file.motion, outcome.loads.BriefReport());
   fmt::print("{}{}", JointLines(file, outcome.loads), RuleLine(file, outcome.loads));
+  const std::string centres = DescribeDeadCentres(file.study, outcome.loads);
+  if (!centres.empty()) fmt::print("  dead centres: {}\n", centres);
   for (size_t i = 0; i < outcome.bearings.size(); ++i) {
     fmt::print("{}", BearingLines(file, file.bearings[i], outcome.bearings[i]));
   }
@@ -133,7 +126,7 @@ void PrintSummary(const StudyFile& file, const StudyOutcome& outcome, const Outp
 }  // namespace
 
 int RunLoads(const LoadsArguments& arguments) {
-  StudyFile file = ReadOrRedirect(arguments.study);
+  StudyFile file = ReadAs({"loads", {FileKind::kStudy}}, arguments.study, ReadStudy);
   if (arguments.tolerance) file.study.mechanism.tolerance = *arguments.tolerance;
   LoadStudyOptions options;
   options.threads = Threads(arguments);
@@ -157,7 +150,7 @@ int RunLoads(const LoadsArguments& arguments) {
   folder.Commit();
   if (!arguments.quiet) PrintSummary(file, outcome, folder);
   const bool met = std::all_of(outcome.bearings.begin(), outcome.bearings.end(),
-                               [](const BearingOutcome& b) { return b.bearings.complete(); });
+                               [](const BearingOutcome& b) { return b.bearings.met(); });
   return met ? kSuccess : kNotMet;
 }
 

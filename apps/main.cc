@@ -5,10 +5,15 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <stdexcept>
-#include <string_view>
+#include <string>
+#include <system_error>
+#include <vector>
 
 #include "vmech/apps/commands.h"
+#include "vmech/apps/completion.h"
 #include "vmech/apps/import_launcher.h"
+#include "vmech/apps/option_error.h"
+#include "vmech/apps/suggestion.h"
 #include "vmech/mechanisms/document.h"
 #include "vmech/mechanisms/mechanism.h"
 
@@ -65,6 +70,15 @@ void AddTolerance(CLI::App* command, std::optional<double>* tolerance) {
       ->type_name("NUMBER");
 }
 
+/// The solvers in braces, as CLI11 shows choices.
+std::string Solvers() {
+  std::string names;
+  for (const vmech::Backend backend : vmech::kAllBackends) {
+    names += (names.empty() ? "{" : ",") + std::string(vmech::NameOf(backend));
+  }
+  return names + "}";
+}
+
 void AddIk(CLI::App* app, vmech::IkArguments* ik) {
   CLI::App* command = app->add_subcommand("ik", kIkHelp);
   vmech::IkQuestion& question = ik->question;
@@ -79,7 +93,7 @@ void AddIk(CLI::App* app, vmech::IkArguments* ik) {
       ->type_name("NUMBERS");
   command->add_option("--grasp", question.grasp, "by which it is held (default: the first)")
       ->type_name("NAME");
-  command->add_option("--solver", question.solver, "who solves it")
+  command->add_option("--solver", question.solver, "who solves it: " + Solvers())
       ->type_name("NAME")
       ->capture_default_str();
   command
@@ -199,91 +213,161 @@ void AddReplay(CLI::App* app, vmech::ReplayArguments* replay) {
   command->add_flag("-q,--quiet", replay->quiet, "print nothing but errors");
 }
 
-int Run(int argc, char** argv) {
-  CLI::App app{"vmech: mechanisms, their motion, the loads on their joints, and bearings for them",
-               "vmech"};
-  app.set_version_flag("--version", std::string("vmech ") + VMECH_VERSION);
-  app.require_subcommand(1);
-  app.footer(kExitCodes);
-
-  vmech::CheckArguments check;
-  CLI::App* check_command = app.add_subcommand("check", kCheckHelp);
-  check_command->add_option("MECHANISM", check.mechanism, "mechanism file, YAML or JSON")
+void AddCheck(CLI::App* app, vmech::CheckArguments* check) {
+  CLI::App* command = app->add_subcommand("check", kCheckHelp);
+  command->add_option("MECHANISM", check->mechanisms, "mechanism files, YAML or JSON")
       ->required()
       ->type_name("FILE");
-  AddTolerance(check_command, &check.tolerance);
-  check_command->add_flag("--json", check.json, "print JSON instead of text");
+  AddTolerance(command, &check->tolerance);
+  command->add_flag("--dh", check->dh, "print the Denavit-Hartenberg rows as well");
+  command->add_flag("--json", check->json, "print JSON instead of text");
+}
 
-  vmech::LoadsArguments loads;
-  CLI::App* loads_command = app.add_subcommand("loads", kLoadsHelp);
-  loads_command->add_option("STUDY", loads.study, "study file, YAML or JSON")
+void AddLoads(CLI::App* app, vmech::LoadsArguments* loads) {
+  CLI::App* command = app->add_subcommand("loads", kLoadsHelp);
+  command->add_option("STUDY", loads->study, "study file, YAML or JSON")
       ->required()
       ->type_name("FILE");
-  loads_command
-      ->add_option("--out", loads.out,
+  command
+      ->add_option("--out", loads->out,
                    "folder for the results (default: <study>-loads in this folder)")
       ->type_name("DIR");
-  loads_command->add_option("--threads", loads.threads, "threads; 0 for all processors")
+  command->add_option("--threads", loads->threads, "threads; 0 for all processors")
       ->check(CLI::Range(0, 64, "0..64"))
       ->capture_default_str();
-  AddTolerance(loads_command, &loads.tolerance);
-  loads_command->add_flag("-q,--quiet", loads.quiet, "print nothing but errors");
+  AddTolerance(command, &loads->tolerance);
+  command->add_flag("-q,--quiet", loads->quiet, "print nothing but errors");
+}
 
-  vmech::CompareArguments compare;
-  CLI::App* compare_command = app.add_subcommand("compare", kCompareHelp);
-  compare_command->add_option("SUITE", compare.suite, "suite file, YAML or JSON")
+void AddCompare(CLI::App* app, vmech::CompareArguments* compare) {
+  CLI::App* command = app->add_subcommand("compare", kCompareHelp);
+  command->add_option("SUITE", compare->suite, "suite file, YAML or JSON")
       ->required()
       ->type_name("FILE");
-  compare_command->add_option("--solvers", compare.solvers, "names, by commas (default: all)")
+  command->add_option("--solvers", compare->solvers, "names, by commas (default: all)")
       ->delimiter(',')
       ->type_name("NAMES");
-  compare_command
-      ->add_option("--out", compare.out,
+  command
+      ->add_option("--out", compare->out,
                    "folder for the results (default: <suite>-compare in this folder)")
       ->type_name("DIR");
-  compare_command->add_option("--jobs", compare.jobs, "processes; 0 for one per processor")
+  command->add_option("--jobs", compare->jobs, "processes; 0 for one per processor")
       ->check(CLI::Range(0, 256, "0..256"))
       ->capture_default_str();
-  compare_command->add_flag("-q,--quiet", compare.quiet, "print nothing but errors");
+  command->add_flag("-q,--quiet", compare->quiet, "print nothing but errors");
+}
 
-  app.add_subcommand(
-      "import",
-      "Makes a mechanism file of a CAD assembly, SDFormat or URDF; see `vmech import --help`");
+/// Everything that the command line can ask for.
+struct Arguments {
+  vmech::CheckArguments check;
+  vmech::LoadsArguments loads;
+  vmech::CompareArguments compare;
   vmech::IkArguments ik;
-  AddIk(&app, &ik);
   vmech::HapticArguments haptic;
-  AddHaptic(&app, &haptic);
   vmech::ReplayArguments replay;
-  AddReplay(&app, &replay);
-  vmech::ExportArguments export_arguments;
-  AddExport(&app, &export_arguments);
+  vmech::ExportArguments exported;
+  std::string shell;
+};
 
+constexpr const char* kCompletionHelp =
+    "Prints what a shell needs to complete the words of vmech:\n"
+    "  eval \"$(vmech completion bash)\"";
+
+void AddCommands(CLI::App* app, Arguments* arguments) {
+  AddCheck(app, &arguments->check);
+  AddLoads(app, &arguments->loads);
+  AddCompare(app, &arguments->compare);
+  app->add_subcommand("import",
+                      "Makes a mechanism file of a CAD assembly, SDFormat or URDF; see `vmech "
+                      "import --help`");
+  AddIk(app, &arguments->ik);
+  AddHaptic(app, &arguments->haptic);
+  AddReplay(app, &arguments->replay);
+  AddExport(app, &arguments->exported);
+  app->add_subcommand("completion", kCompletionHelp)
+      ->add_option("SHELL", arguments->shell, "for which shell")
+      ->required()
+      ->check(CLI::IsMember({"bash"}));
+  app->add_subcommand("help", "Says how a command is called: vmech help COMMAND");
+}
+
+int PrintCompletion() {
+  fmt::print("{}", vmech::BashCompletion());
+  return vmech::kSuccess;
+}
+
+int RunCommand(const CLI::App& app, const Arguments& arguments) {
+  if (app.got_subcommand("check")) return RunCheck(arguments.check);
+  if (app.got_subcommand("loads")) return RunLoads(arguments.loads);
+  if (app.got_subcommand("ik")) return RunIk(arguments.ik);
+  if (app.got_subcommand("haptic")) return RunHaptic(arguments.haptic);
+  if (app.got_subcommand("replay")) return RunReplay(arguments.replay);
+  if (app.got_subcommand("export")) return RunExport(arguments.exported);
+  if (app.got_subcommand("completion")) return PrintCompletion();
+  return RunCompare(arguments.compare);
+}
+
+/// A refused command line, or help and version, which CLI11 reports in the same way.
+int Refuse(const CLI::App& app, const CLI::ParseError& error,
+           const std::vector<std::string>& words) {
+  const bool asked = error.get_exit_code() == 0;
+  const std::string suggestion = asked ? "" : vmech::Suggestion(app, words);
+  if (suggestion.empty()) return app.exit(error) == 0 ? vmech::kSuccess : vmech::kBadUsage;
+  fmt::print(stderr, "vmech: {}\nRun with --help for more information.\n", suggestion);
+  return vmech::kBadUsage;
+}
+
+int Run(const std::vector<std::string>& words) {
+  CLI::App app{"vmech: mechanisms, their motion, the loads on their joints, and bearings for them",
+               "vmech"};
+  app.set_version_flag("-V,--version", std::string("vmech ") + VMECH_VERSION);
+  app.require_subcommand(1);
+  app.footer(kExitCodes);
+  Arguments arguments;
+  AddCommands(&app, &arguments);
   try {
-    app.parse(argc, argv);
+    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? vmech::kSuccess : vmech::kBadUsage;
+    return Refuse(app, error, words);
   }
-  const int code = check_command->parsed()        ? RunCheck(check)
-                   : loads_command->parsed()      ? RunLoads(loads)
-                   : app.got_subcommand("ik")     ? RunIk(ik)
-                   : app.got_subcommand("haptic") ? RunHaptic(haptic)
-                   : app.got_subcommand("replay") ? RunReplay(replay)
-                   : app.got_subcommand("export") ? RunExport(export_arguments)
-                                                  : RunCompare(compare);
+  const int code = RunCommand(app, arguments);
   if (std::fflush(stdout) != 0) throw vmech::FileErrors("standard output", "cannot be written");
   return code;
+}
+
+/// `vmech help COMMAND` is `vmech COMMAND --help`.
+std::vector<std::string> WithoutHelpCommand(std::vector<std::string> words) {
+  if (words.empty() || words[0] != "help") return words;
+  if (words.size() == 1) return {"--help"};
+  if (words[1][0] == '-') return {"--help"};
+  return {words[1], "--help"};
+}
+
+/// Becomes vmech-import, whose words these are.
+[[noreturn]] void Import(std::vector<std::string> words) {
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  vmech::BecomeImport(pointers.data());
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   try {
-    if (argc > 1 && std::string_view(argv[1]) == "import") vmech::BecomeImport(argv + 1);
-    return Run(argc, argv);
+    const std::vector<std::string> words = WithoutHelpCommand({argv + 1, argv + argc});
+    if (!words.empty() && words[0] == "import") Import(words);
+    return Run(words);
   } catch (const vmech::FileErrors& error) {
     fmt::print(stderr, "{}\n", error.what());
     return vmech::kBadInput;
+  } catch (const vmech::OptionError& error) {
+    fmt::print(stderr, "vmech: {}\nRun with --help for more information.\n", error.what());
+    return vmech::kBadUsage;
   } catch (const std::invalid_argument& error) {
+    fmt::print(stderr, "vmech: {}\n", error.what());
+    return vmech::kBadInput;
+  } catch (const std::system_error& error) {
     fmt::print(stderr, "vmech: {}\n", error.what());
     return vmech::kBadInput;
   } catch (const std::runtime_error& error) {

@@ -1,11 +1,14 @@
 #include "vmech/apps/read_motion.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+
+#include "vmech/mechanisms/freedoms.h"
 
 namespace vmech {
 namespace {
@@ -27,6 +30,37 @@ std::vector<double> EqualSteps(double begin, double end, int steps, bool repeats
   return times;
 }
 
+/// The name that a number of earlier studies, which counted freedoms from 0, stands for.
+std::string NameForNumber(const Node& freedom, const std::vector<std::string>& names) {
+  const double number = freedom.Number();
+  for (size_t k = 0; k < names.size(); ++k) {
+    if (number == static_cast<double>(k)) return fmt::format("; write {} for {}", names[k], k);
+  }
+  return "";
+}
+
+/// The freedom that a drive names; the only one where it names none.
+int ReadFreedom(const Node& node, JointType type) {
+  const std::vector<std::string> names = NamesOfFreedoms(type);
+  const std::string has = fmt::format("a {} joint has {}", NameOf(type), fmt::join(names, ", "));
+  const Node freedom = node["freedom"];
+  if (!freedom) {
+    if (names.size() > 1) node.KeyError("the key 'freedom' is missing: " + has);
+    return 0;
+  }
+  if (freedom.IsNumber()) {
+    freedom.Error("freedoms have names: " + has + NameForNumber(freedom, names));
+    return 0;
+  }
+  const std::string name = freedom.Text();
+  const int found = FindFreedom(type, name);
+  if (found >= 0) return found;
+  if (freedom.kind() == Node::Kind::kScalar) {
+    freedom.Error(fmt::format("there is no freedom {}: {}", Quoted(name), has));
+  }
+  return 0;
+}
+
 /// The joint and the freedom that a drive moves.
 bool ReadDriven(const Node& node, const Mechanism& mechanism, JointDrive* drive) {
   drive->joint = FindPart(node["joint"], "joint", mechanism.joints);
@@ -36,11 +70,7 @@ bool ReadDriven(const Node& node, const Mechanism& mechanism, JointDrive* drive)
     node["joint"].Error("this joint has no freedom that a motor can drive");
     return false;
   }
-  if (freedoms > 1 && !node["freedom"]) {
-    node.KeyError(fmt::format("the key 'freedom' is missing: 0 to {}, for a joint with {} freedoms",
-                              freedoms - 1, freedoms));
-  }
-  drive->freedom = node["freedom"].Integer(0, 0, freedoms - 1);
+  drive->freedom = ReadFreedom(node, mechanism.joints[drive->joint].type);
   return true;
 }
 
@@ -242,25 +272,16 @@ bool CheckColumns(const Node& node, const CsvTable& table, const std::vector<std
   }
   for (const std::string& name : table.names) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    ReportInTable(
-        node, table, -1,
-        fmt::format("unknown column {}; known here: {}", Quoted(name), fmt::join(known, ", ")));
+    std::string hint = DidYouMean(name, known);
+    if (hint.empty()) hint = fmt::format("; known here: {}", fmt::join(known, ", "));
+    ReportInTable(node, table, -1, "unknown column " + Quoted(name) + hint);
     ok = false;
   }
   return ok;
 }
 
 bool IsRotation(JointType type, int freedom) {
-  switch (type) {
-    case JointType::kPrismatic:
-      return false;
-    case JointType::kCylindrical:
-      return freedom == 1;
-    case JointType::kPlanar:
-      return freedom == 2;
-    default:
-      return true;
-  }
+  return FreedomsOfType(type).rotates[freedom];
 }
 
 void ReadMotion(const Node& node, const Units& units, const std::filesystem::path& folder,
@@ -291,6 +312,7 @@ std::string MotionInWords(const Node& node) {
   for (const Node& drive : drives) {
     if (!words.empty()) words += "; ";
     words += drive["grasp"] ? "a hand at " + drive["grasp"].Text() : drive["joint"].Text();
+    if (drive["freedom"]) words += "." + drive["freedom"].Text();
     if (drive["rpm"]) words += fmt::format(" at {:g} rpm", drive["rpm"].Number());
     if (drive["speed"]) words += " at constant speed";
     if (drive["table"]) words += " through " + drive["table"].Text();

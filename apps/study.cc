@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "vmech/dynamics/open_components.h"
+
 namespace vmech {
 namespace {
 
@@ -68,7 +70,7 @@ StudyOutcome RunStudy(const StudyFile& file, const LoadStudyOptions& options) {
     outcome.bearings.push_back(
         {request.joint,
          SelectJointBearings(cycle, request.arrangement, request.requirements,
-                             CertaintyOfLoads(outcome.loads.certainty[request.joint]),
+                             CertaintyOfLoads(VerdictsThatMatter(outcome.loads, request.joint)),
                              file.catalogue)});
     for (const std::string& warning : outcome.bearings.back().bearings.warnings) {
       outcome.warnings.push_back(joint.name + ": " + warning);

@@ -10,6 +10,7 @@
 
 #include "vmech/apps/read_motion.h"
 #include "vmech/dynamics/bearings/catalogue.h"
+#include "vmech/mechanisms/freedoms.h"
 #include "vmech/mechanisms/reader.h"
 
 namespace vmech {
@@ -65,9 +66,10 @@ std::optional<double> ReadArgument(const Node& node, const CsvTable& table, cons
   if (!study.drives.empty()) {
     const JointDrive& drive = study.drives[0];
     const Joint& joint = study.mechanism.joints[drive.joint];
-    known = fmt::format("'t' or the driven joint '{}'", joint.name);
-    if (table.names[0] == joint.name) {
-      argument = joint.name;
+    const std::string driven = NameOfFreedom(joint, drive.freedom);
+    known = fmt::format("'t' or the driven joint '{}'", driven);
+    if (table.names[0] == driven) {
+      argument = driven;
       unit = IsRotation(joint.type, drive.freedom) ? units.angle : units.length;
       load->over = ExternalLoad::Over::kDriveCoordinate;
     }
@@ -170,6 +172,7 @@ BearingRequirements ReadRequirements(const Node& node, const Units& units) {
   }
   if (const Node housing = node["housing"]) asked.housing_max = units.length * housing.Positive();
   asked.life_hours = node["life_hours"].NonNegative(asked.life_hours);
+  if (const Node pair = node["pair_life_hours"]) asked.pair_life_hours = pair.NonNegative();
   asked.reliability = node["reliability"].Positive(asked.reliability);
   asked.static_safety = node["static_safety"].Positive(asked.static_safety);
   asked.lubrication = node["lubrication"].Word<Lubrication>(
@@ -194,12 +197,15 @@ BearingRequest ReadBearings(const Node& node, const Units& units, const Mechanis
     return request;
   }
   if (!node.CheckKeys({}, {"description", "positions", "locating", "shaft", "housing", "life_hours",
-                           "reliability", "static_safety", "lubrication"})) {
+                           "pair_life_hours", "reliability", "static_safety", "lubrication"})) {
     return request;
   }
   node["description"].Text();
   request.arrangement = ReadArrangement(node, units);
   request.requirements = ReadRequirements(node, units);
+  if (request.arrangement.positions.size() < 2 && node["pair_life_hours"]) {
+    node["pair_life_hours"].KeyError("there is one bearing; give two positions, or leave this out");
+  }
   try {
     request.arrangement.Validate();
     request.requirements.Validate();

@@ -2,12 +2,17 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "vmech/apps/dead_centres.h"
 #include "vmech/apps/tables.h"
+#include "vmech/dynamics/open_components.h"
+#include "vmech/mechanisms/freedoms.h"
 
 namespace vmech {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr const char* kComponents[] = {"fx", "fy", "fz", "mx", "my", "mz"};
 
 /// JSON has no infinity; what is unlimited is null.
 Json Finite(double value) {
@@ -23,19 +28,27 @@ Json JointSummary(const StudyFile& file, const LoadStudyResult& loads, size_t j)
   }
   Json certainty = Json::array();
   for (Certainty c : loads.certainty[j]) certainty.push_back(NameOf(c));
+  const JointCertainty matters = VerdictsThatMatter(loads, j);
+  Json open = Json::array();
+  for (size_t k = 0; k < matters.size(); ++k) {
+    if (matters[k] == Certainty::kNotDetermined) open.push_back(kComponents[k]);
+  }
   return {{"name", file.study.mechanism.joints[j].name},
           {"type", NameOf(file.study.mechanism.joints[j].type)},
           {"peak_radial_force", radial},
           {"peak_axial_force", axial},
           {"peak_tilting_moment", tilting},
-          {"certainty", certainty}};
+          {"certainty", certainty},
+          {"open", open}};
 }
 
 Json BearingSummary(const StudyFile& file, const BearingOutcome& outcome) {
   Json json{{"joint", file.study.mechanism.joints[outcome.joint].name},
             {"complete", outcome.bearings.complete()},
+            {"met", outcome.bearings.met()},
             {"certain", outcome.bearings.certainty == LoadCertainty::kCertain},
             {"system_life_hours", Finite(outcome.bearings.system_life_hours)},
+            {"asked_system_life_hours", outcome.bearings.asked_system_life},
             {"positions", Json::array()}};
   for (const BearingSelection& selection : outcome.bearings.selections) {
     Json position{{"message", selection.message}, {"warnings", selection.warnings}};
@@ -76,12 +89,19 @@ std::string SummaryJson(const StudyFile& file, const StudyOutcome& outcome) {
     for (const PoseLoads& pose : loads.poses) {
       peak = std::max(peak, std::abs(pose.drives[k].force));
     }
-    drives.push_back({{"joint", file.study.mechanism.joints[file.study.drives[k].joint].name},
-                      {"freedom", file.study.drives[k].freedom + 1},
+    const JointDrive& drive = file.study.drives[k];
+    const Joint& joint = file.study.mechanism.joints[drive.joint];
+    drives.push_back({{"joint", joint.name},
+                      {"freedom", NameOfFreedom(joint.type, drive.freedom)},
                       {"peak_force", peak},
                       {"certainty", NameOf(loads.drive_certainty[k])}});
   }
   json["drives"] = drives;
+  json["dead_centres"] = Json::array();
+  for (const DeadCentre& centre : FindDeadCentres(file.study, loads)) {
+    json["dead_centres"].push_back(
+        {{"joint", file.study.mechanism.joints[centre.joint].name}, {"angle", centre.angle}});
+  }
   json["joints"] = Json::array();
   for (size_t j = 0; j < file.study.mechanism.joints.size(); ++j) {
     json["joints"].push_back(JointSummary(file, loads, j));

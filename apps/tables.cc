@@ -9,6 +9,8 @@
 #include <iterator>
 #include <thread>
 
+#include "vmech/mechanisms/freedoms.h"
+
 namespace vmech {
 namespace {
 
@@ -76,10 +78,7 @@ std::string DriveColumn(const StudyFile& file, size_t drive, const char* what) {
   const LoadStudy& study = file.study;
   if (study.drives.size() == 1) return fmt::format("drive.{}", what);
   const Joint& joint = study.mechanism.joints[study.drives[drive].joint];
-  const std::string freedom = FreedomsOf(joint.type) > 1
-                                  ? fmt::format(".{}", study.drives[drive].freedom + 1)
-                                  : std::string();
-  return fmt::format("drive.{}{}.{}", joint.name, freedom, what);
+  return fmt::format("drive.{}.{}", NameOfFreedom(joint, study.drives[drive].freedom), what);
 }
 
 std::string LoadsHeader(const StudyFile& file) {

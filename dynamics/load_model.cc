@@ -13,6 +13,7 @@
 #include "vmech/kinematics/assembled_mechanism.h"
 #include "vmech/kinematics/jacobian.h"
 #include "vmech/kinematics/linear_algebra.h"
+#include "vmech/mechanisms/freedoms.h"
 
 namespace vmech {
 namespace {
@@ -111,8 +112,9 @@ std::string DrivesAt(const LoadStudy& study, const std::vector<double>& position
   for (size_t k = 0; k < study.drives.size(); ++k) {
     const JointDrive& drive = study.drives[k];
     const Joint& joint = study.mechanism.joints[drive.joint];
-    text += fmt::format("{}'{}' at {}", k == 0 ? "with " : ", ", joint.name,
-                        FormatCoordinate(study.units, joint, drive.freedom, positions[k]));
+    text +=
+        fmt::format("{}'{}' at {}", k == 0 ? "with " : ", ", NameOfFreedom(joint, drive.freedom),
+                    FormatCoordinate(study.units, joint, drive.freedom, positions[k]));
   }
   return text.empty() ? "under the hand" : text;
 }

@@ -13,9 +13,11 @@
 #include "vmech/dynamics/external_loads.h"
 #include "vmech/dynamics/friction_report.h"
 #include "vmech/dynamics/load_model.h"
+#include "vmech/dynamics/open_components.h"
 #include "vmech/dynamics/rule_dependence.h"
 #include "vmech/dynamics/study_plausibility.h"
 #include "vmech/kinematics/packet.h"
+#include "vmech/mechanisms/freedoms.h"
 
 namespace vmech {
 namespace {
@@ -142,19 +144,26 @@ void AddRuleDependence(const PreparedStudy& prepared, const Motion& motion,
   const LoadModel& model = prepared.model;
   result->drive_certainty.assign(model.drives.size(), Certainty::kCertain);
   const bool settled_by_choice = model.has_load_friction || model.hand;
-  if (!settled_by_choice || model.rule == ReactionRule::kPaperJoint) return;
+  const bool by_rule = model.rule == ReactionRule::kPaperJoint;
+  if (by_rule || !(settled_by_choice || AnyNotDetermined(*result))) {
+    result->open = FindOpenComponents(*result, nullptr, model.tree.length);
+    return;
+  }
   const RuleDependence dependence = FindRuleDependence(prepared, motion, poses);
-  for (size_t j = 0; j < result->certainty.size(); ++j) {
+  for (size_t j = 0; settled_by_choice && j < result->certainty.size(); ++j) {
     for (int k = 0; k < 6; ++k) {
       if (dependence.joints[j][k]) result->certainty[j][k] = Certainty::kNotDetermined;
     }
   }
+  result->open = FindOpenComponents(*result, &dependence, model.tree.length);
+  if (!settled_by_choice) return;
   std::string drives;
   for (size_t k = 0; k < model.drives.size(); ++k) {
     if (!dependence.drives[k]) continue;
     result->drive_certainty[k] = Certainty::kNotDetermined;
+    const JointDrive& drive = model.drives[k];
     drives += fmt::format("{}'{}'", drives.empty() ? "" : ", ",
-                          model.tree.mechanism.joints[model.drives[k].joint].name);
+                          NameOfFreedom(model.tree.mechanism.joints[drive.joint], drive.freedom));
   }
   if (drives.empty()) return;
   result->warnings.push_back(fmt::format(
@@ -257,9 +266,9 @@ std::string DescribePassed(const LoadStudy& study, const LoadStudyResult& result
   return fmt::format(
       "the motion leaves the limits {} to {} of joint '{}' at {} of {} poses, from pose {} (t = "
       "{:.6g} s) on; by {} at most, at pose {}, where it is at {}",
-      text(joint.lower[k]), text(joint.upper[k]), joint.name, passed.poses, result.poses.size(),
-      passed.first, result.poses[passed.first].time, text(passed.most), passed.worst,
-      text(result.poses[passed.worst].joints[j].position[k]));
+      text(joint.lower[k]), text(joint.upper[k]), NameOfFreedom(joint, k), passed.poses,
+      result.poses.size(), passed.first, result.poses[passed.first].time, text(passed.most),
+      passed.worst, text(result.poses[passed.worst].joints[j].position[k]));
 }
 
 /// Warns where the motion leaves the limits of a joint, or refuses it.

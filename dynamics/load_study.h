@@ -145,6 +145,9 @@ struct LoadStudyResult {
   double max_power_error = 0;
   std::vector<std::string> warnings;
   std::vector<std::string> notes;  ///< what the assembly did, as AssembledMechanism::Notes
+  /// Per joint and component: not determined by statics, and loaded by this study. What is zero at
+  /// every pose whatever the stiffnesses, as forces across the plane of a planar load are, is not.
+  std::vector<std::array<bool, 6>> open;
   std::string BriefReport() const;
 };
 

@@ -208,9 +208,7 @@ std::string MovedStartText(const Mechanism& m, const MovedStart& moved) {
     return fmt::format("'{}' turned by {:.6g} {}", joint.name, moved.to / m.units.radians,
                        m.units.angle);
   }
-  const bool several = FreedomsOf(joint.type) > 1;
-  return fmt::format("'{}'{} from {} to {}", joint.name,
-                     several ? fmt::format(" (freedom {})", moved.freedom) : "",
+  return fmt::format("'{}' from {} to {}", NameOfFreedom(joint, moved.freedom),
                      FormatCoordinate(m.units, joint, moved.freedom, moved.from),
                      FormatCoordinate(m.units, joint, moved.freedom, moved.to));
 }
@@ -254,7 +252,8 @@ std::vector<std::string> StartsOutsideLimits(const Mechanism& mechanism) {
         return FormatCoordinate(mechanism.units, joint, static_cast<int>(k), value);
       };
       outside.push_back(fmt::format("joint '{}' starts at {}, outside its limits {} to {}",
-                                    joint.name, text(start), text(lower), text(upper)));
+                                    NameOfFreedom(joint, static_cast<int>(k)), text(start),
+                                    text(lower), text(upper)));
     }
   }
   return outside;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "vmech/kinematics/forward_kinematics.h"
+#include "vmech/mechanisms/freedoms.h"
 #include "vmech/mechanisms/validity.h"
 
 namespace vmech {
@@ -206,9 +207,7 @@ std::string NameOfVelocity(const KinematicTree& tree, int v) {
   for (const TreeNode& node : tree.nodes) {
     const int k = v - node.v;
     if (node.v < 0 || k < 0 || k >= VelocitiesOf(node.motion)) continue;
-    const Joint& joint = tree.mechanism.joints[node.joint];
-    if (FreedomsOf(joint.type) == 1) return joint.name;
-    return joint.name + "." + std::to_string(node.freedom + k + 1);
+    return NameOfFreedom(tree.mechanism.joints[node.joint], node.freedom + k);
   }
   return "?";
 }

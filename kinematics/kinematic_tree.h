@@ -104,7 +104,7 @@ VectorXd StartCoordinates(const KinematicTree& tree);
 /// q (+) dv: coordinates after moving by dv in the tangent space; quaternions are renormalised.
 void Integrate(const KinematicTree& tree, const VectorXd& dv, VectorXd* q);
 
-/// One velocity of the tree as text: "pin", or "ball.2" for a freedom of a joint with several.
+/// One velocity of the tree as text: "pin", or "ball.ry" for a freedom of a joint with several.
 std::string NameOfVelocity(const KinematicTree& tree, int v);
 /// Index in v of the given freedom of a tree joint; -1 if the joint is cut.
 int VelocityIndex(const KinematicTree& tree, int joint, int freedom);

@@ -134,8 +134,7 @@ class TableBuilder {
                                  chain[i],
                                  Turned(X_BM, chain[i].R_FE),
                                  {}});
-      const std::string name =
-          chain.size() == 1 ? joint.name : fmt::format("{}.{}", joint.name, chain[i].freedom + 1);
+      const std::string name = NameOfFreedom(joint, chain[i].freedom);
       bodies_[parent].distal.push_back({name, Turned(X_BF, chain[i].R_FE), child, -1, {}});
       parent = child;
       X_BF = Posed();

@@ -31,7 +31,7 @@ namespace vmech {
 enum class DhMotion { kFixed, kRotation, kTranslation, kScrew };
 
 struct DhRow {
-  std::string axis;  ///< whose axis z of the end frame is: "pin", "ball.2", "grasp tip", ...
+  std::string axis;  ///< whose axis z of the end frame is: "pin", "ball.ry", "grasp tip", ...
   int from = -1;     ///< row at whose end frame this one begins; -1: the world
   int link = -1;     ///< link to which the end frame is fixed; -1 between the freedoms of a joint
   DhMotion motion = DhMotion::kFixed;

@@ -10,6 +10,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "vmech/mechanisms/explain_yaml.h"
 #include "vmech/mechanisms/parse_yaml.h"
 
 namespace vmech {
@@ -168,7 +169,7 @@ std::string Quoted(std::string_view text) {
 // Document
 
 Document::Document(std::string_view text, std::string name)
-    : name_(std::move(name)), items_(ParseYaml(text, name_)) {
+    : name_(std::move(name)), text_(text), items_(ParseYaml(text, name_)) {
   CheckDuplicateKeys();
 }
 
@@ -189,6 +190,9 @@ void Document::CheckDuplicateKeys() {
 }
 
 void Document::Report(FileError error) {
+  if (error.file == name_ && SlashComment(text_, error.line) > 0) {
+    error.message += fmt::format("; {}", kSlashComment);
+  }
   errors_.push_back(std::move(error));
   if (errors_.size() < kMaxErrors) return;
   errors_.push_back({name_, 0, 0, "", "too many errors; stopped here"});
@@ -305,6 +309,12 @@ void Node::CheckName() const {
   } else if (std::any_of(name.begin(), name.end(), misfit)) {
     KeyError("a name has no '/', ',', '\"', '\\' or control character in it");
   }
+}
+
+bool Node::IsNumber() const {
+  if (kind() != Kind::kScalar) return false;
+  const Document::Item& item = document_->items_[index_];
+  return item.plain && ParseNumber(item.text).has_value();
 }
 
 double Node::Number(double fallback) const {

@@ -101,6 +101,8 @@ class Node {
   /// or with '/', ',', '"', '\' or a control character in it.
   void CheckName() const;
 
+  /// True for a scalar without quotes that reads as a number.
+  bool IsNumber() const;
   double Number(double fallback = 0) const;
   double Positive(double fallback = 1) const;
   double NonNegative(double fallback = 0) const;
@@ -161,7 +163,7 @@ class Document {
   friend class Node;
   void CheckDuplicateKeys();
 
-  std::string name_;
+  std::string name_, text_;
   std::vector<Item> items_;
   std::vector<FileError> errors_;
 };

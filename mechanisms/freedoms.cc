@@ -53,6 +53,28 @@ std::vector<ElementaryFreedom> ElementaryFreedoms(JointType type) {
   return {};
 }
 
+std::string NameOfFreedom(JointType type, int freedom) {
+  const ElementaryFreedom motion = ElementaryFreedoms(type).at(freedom);
+  return std::string(motion.rotates ? "r" : "") + "xyz"[motion.axis];
+}
+
+std::vector<std::string> NamesOfFreedoms(JointType type) {
+  std::vector<std::string> names;
+  for (int k = 0; k < FreedomsOf(type); ++k) names.push_back(NameOfFreedom(type, k));
+  return names;
+}
+
+int FindFreedom(JointType type, std::string_view name) {
+  const std::vector<std::string> names = NamesOfFreedoms(type);
+  const auto found = std::find(names.begin(), names.end(), name);
+  return found == names.end() ? -1 : static_cast<int>(found - names.begin());
+}
+
+std::string NameOfFreedom(const Joint& joint, int freedom) {
+  if (FreedomsOf(joint.type) < 2) return joint.name;
+  return joint.name + "." + NameOfFreedom(joint.type, freedom);
+}
+
 Matrix3d ZOnto(int axis) {
   Matrix3d R = Matrix3d::Zero();
   R(axis, 2) = R((axis + 1) % 3, 0) = R((axis + 2) % 3, 1) = 1;

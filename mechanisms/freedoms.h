@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "vmech/mechanisms/mechanism.h"
@@ -34,6 +36,19 @@ struct ElementaryFreedom {
 /// the product of their motions. The shift of a screw goes with its turn; a spherical joint, whose
 /// coordinates are a quaternion, is here three turns about x, y, z.
 std::vector<ElementaryFreedom> ElementaryFreedoms(JointType type);
+
+/// The name of a freedom in files, tables and messages: x, y, z along and rx, ry, rz about the axes
+/// of the joint's frame. A screw, whose travel goes with its turn, has rz alone.
+std::string NameOfFreedom(JointType type, int freedom);
+
+/// The names of all freedoms in the order of the joint's lists: x, y, rz of a planar joint.
+std::vector<std::string> NamesOfFreedoms(JointType type);
+
+/// The index of a freedom by its name; -1 if the type has none of that name.
+int FindFreedom(JointType type, std::string_view name);
+
+/// A freedom among those of a mechanism: "pin" where it is the joint's only one, else "ball.rx".
+std::string NameOfFreedom(const Joint& joint, int freedom);
 
 /// The cyclic permutation of the axes that brings z onto the given one.
 Matrix3d ZOnto(int axis);

@@ -8,6 +8,8 @@
 
 #include <sstream>
 
+#include "vmech/mechanisms/explain_yaml.h"
+
 namespace vmech {
 namespace {
 
@@ -152,6 +154,17 @@ class ItemBuilder : public YAML::EventHandler {
   bool has_key_ = false;
 };
 
+/// What stopped yaml-cpp, in its own words only where no other are known.
+FileError Explained(const YAML::Exception& error, std::string_view text, const std::string& name) {
+  const int line = error.mark.line + 1;
+  if (const std::optional<YamlSlip> slip = ExplainYaml(text, line)) {
+    return {name, slip->line, slip->column, "", slip->message};
+  }
+  const bool flow = error.msg.find(" flow") != std::string::npos;
+  const char* hint = flow ? "; a bracket is not closed, or a comma is missing, here or before" : "";
+  return {name, line, error.mark.column + 1, "", error.msg + hint};
+}
+
 }  // namespace
 
 std::vector<Item> ParseYaml(std::string_view text, const std::string& name) {
@@ -165,8 +178,12 @@ std::vector<Item> ParseYaml(std::string_view text, const std::string& name) {
     YAML::Parser parser(stream);
     while (parser.HandleNextDocument(builder)) {
     }
+  } catch (const FileErrors& refused) {
+    const int line = refused.errors().front().line, column = SlashComment(text, line);
+    if (column == 0) throw;
+    throw FileErrors({{name, line, column, "", std::string(kSlashComment)}});
   } catch (const YAML::Exception& error) {
-    throw FileErrors({{name, error.mark.line + 1, error.mark.column + 1, "", error.msg}});
+    throw FileErrors({Explained(error, text, name)});
   }
   if (builder.items.empty()) throw FileErrors(name, "the file is empty");
   return std::move(builder.items);

@@ -1,6 +1,7 @@
 #include "vmech/mechanisms/read_joint.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <numbers>
@@ -10,12 +11,34 @@
 namespace vmech {
 namespace {
 
+/// Does something with every entry of a map whose keys are names of freedoms, and its index.
+template <typename Use>
+void ForEachFreedom(const Node& map, JointType type, Use use) {
+  for (const Node& entry : map.Map()) {
+    const int freedom = FindFreedom(type, entry.key());
+    if (freedom >= 0) {
+      use(entry, freedom);
+    } else {
+      entry.KeyError(fmt::format("there is no freedom {}: a {} joint has {}", Quoted(entry.key()),
+                                 NameOf(type), fmt::join(NamesOfFreedoms(type), ", ")));
+    }
+  }
+}
+
+/// The numbers of a list, or of a map by the names of freedoms, where others are zero.
+std::vector<double> NumbersOfFreedoms(const Node& node, JointType type) {
+  if (node.kind() != Node::Kind::kMap) return node.Numbers(FreedomsOf(type));
+  std::vector<double> values(FreedomsOf(type), 0.0);
+  ForEachFreedom(node, type, [&](const Node& entry, int k) { values[k] = entry.Number(); });
+  return values;
+}
+
 /// A value per freedom, in SI: `translation` and `rotation` are the unit of each kind. Empty if
 /// the node is absent or wrong.
 std::vector<double> PerFreedom(const Node& node, JointType type, double translation,
                                double rotation) {
   const std::vector<bool>& rotates = FreedomsOfType(type).rotates;
-  std::vector<double> values = node.Numbers(static_cast<int>(rotates.size()));
+  std::vector<double> values = NumbersOfFreedoms(node, type);
   for (size_t i = 0; i < values.size(); ++i) values[i] *= rotates[i] ? rotation : translation;
   return values;
 }
@@ -82,10 +105,16 @@ void ReadLimitPair(const Node& node, double unit, double* lower, double* upper) 
   *upper = bounds[1];
 }
 
-/// [lower, upper], or for several freedoms a list of such pairs.
+/// [lower, upper], or for several freedoms a list of such pairs or a map of them by names.
 void ReadLimits(const Node& node, const Units& units, Joint* joint) {
   if (!node) return;
   const std::vector<bool>& rotates = FreedomsOfType(joint->type).rotates;
+  const auto read = [&](const Node& pair, int k) {
+    if (pair.kind() == Node::Kind::kNull) return;
+    ReadLimitPair(pair, rotates[k] ? units.angle : units.length, &joint->lower[k],
+                  &joint->upper[k]);
+  };
+  if (node.kind() == Node::Kind::kMap) return ForEachFreedom(node, joint->type, read);
   std::vector<Node> pairs{node};
   if (rotates.size() > 1) pairs = node.List();
   if (pairs.size() != rotates.size()) {
@@ -93,11 +122,7 @@ void ReadLimits(const Node& node, const Units& units, Joint* joint) {
         fmt::format("expected {} pairs [lower, upper], one for each freedom", rotates.size()));
     return;
   }
-  for (size_t i = 0; i < pairs.size(); ++i) {
-    if (pairs[i].kind() == Node::Kind::kNull) continue;
-    const double unit = rotates[i] ? units.angle : units.length;
-    ReadLimitPair(pairs[i], unit, &joint->lower[i], &joint->upper[i]);
-  }
+  for (size_t i = 0; i < pairs.size(); ++i) read(pairs[i], static_cast<int>(i));
 }
 
 void CheckStartWithinLimits(const Node& start, const Joint& joint) {

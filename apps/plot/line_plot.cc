@@ -213,6 +213,17 @@ void DrawLevels(const LinePlot& plot, const Layout& layout, SvgWriter* svg) {
   }
 }
 
+void DrawStations(const LinePlot& plot, const Layout& layout, SvgWriter* svg) {
+  for (const Station& station : plot.stations) {
+    const double x = layout.At(station.x, layout.y.lower).x;
+    if (!(x >= layout.left && x <= layout.right)) continue;
+    svg->Line("level", {x, layout.top}, {x, layout.bottom});
+    const bool at_edge = x + 6 + TextWidth(station.label, kFont) > plot.width;
+    svg->Text(at_edge ? "soft small halo end" : "soft small halo",
+              {at_edge ? x - 5 : x + 5, layout.bottom - 6}, station.label);
+  }
+}
+
 }  // namespace
 
 html::Markup Draw(const LinePlot& plot) {
@@ -236,6 +247,7 @@ html::Markup Draw(const LinePlot& plot) {
   }
   if (clipped) svg.EndClip();
   DrawLevels(plot, layout, &svg);
+  DrawStations(plot, layout, &svg);
   if (!clipped) DrawPeaks(plot, layout, &svg);
   return std::move(svg).Finish();
 }

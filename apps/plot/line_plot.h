@@ -35,6 +35,12 @@ struct Level {
   std::string label;
 };
 
+/// A vertical line across the plot, such as a dead centre.
+struct Station {
+  double x = 0;
+  std::string label;
+};
+
 /// Curves over a common axis.
 struct LinePlot {
   std::string title;
@@ -44,6 +50,7 @@ struct LinePlot {
   std::vector<Level> levels;
   double width = 660;  ///< natural size [CSS pixels]
   double height = 290;
+  std::vector<Station> stations = {};
 };
 
 /// Draws the plot (style: style.h). The same plot gives the same bytes.

@@ -30,6 +30,15 @@ double NiceAngleStep(double raw) {
   return 360 * NiceStep(raw / 360);
 }
 
+bool IsAngle(ScaleType type) {
+  return type == ScaleType::kDegrees || type == ScaleType::kTurns;
+}
+
+/// The angle above 0, up to 360: where a turn ends it is 360, where all begins it is 0.
+double WithinTurn(double angle) {
+  return angle == 0 ? 0 : angle - 360 * (std::ceil(angle / 360) - 1);
+}
+
 int ExponentFor(double magnitude) {
   if (magnitude == 0 || (magnitude >= 0.01 && magnitude < 1e5)) return 0;
   return 3 * static_cast<int>(std::floor(std::log10(magnitude) / 3 + kTickSlack));
@@ -75,11 +84,13 @@ void AddLinearTicks(double step, bool rounded, Scale* scale) {
   }
   scale->exponent = ExponentFor(std::max(std::abs(scale->lower), std::abs(scale->upper)));
   const double unit = std::pow(10.0, scale->exponent);
-  const int decimals = scale->type == ScaleType::kDegrees ? 0 : DecimalsFor(step / unit);
+  const int decimals = IsAngle(scale->type) ? 0 : DecimalsFor(step / unit);
+  const bool turns = scale->type == ScaleType::kTurns;
   const double first = std::ceil(scale->lower / step - kTickSlack);
   const double last = std::floor(scale->upper / step + kTickSlack);
   for (double i = first; i <= last; ++i) {
-    scale->ticks.push_back({i * step, FormatNumber(i * step / unit, decimals)});
+    const double shown = turns ? WithinTurn(i * step) : i * step / unit;
+    scale->ticks.push_back({i * step, FormatNumber(shown, decimals)});
   }
 }
 
@@ -127,44 +138,9 @@ Scale MakeScale(ScaleType type, double min, double max, int target, bool rounded
     AddLogTicks(target, rounded, &scale);
   } else {
     const double raw = (max - min) / target;
-    AddLinearTicks(type == ScaleType::kDegrees ? NiceAngleStep(raw) : NiceStep(raw), rounded,
-                   &scale);
+    AddLinearTicks(IsAngle(type) ? NiceAngleStep(raw) : NiceStep(raw), rounded, &scale);
   }
   return scale;
-}
-
-std::string FormatNumber(double value, int decimals) {
-  if (!std::isfinite(value)) return "–";
-  const std::string digits = fmt::format("{:.{}f}", std::abs(value), decimals);
-  const bool zero = digits.find_first_not_of("0.") == std::string::npos;
-  const std::size_t whole = std::min(digits.find('.'), digits.size());
-  std::string text = value < 0 && !zero ? "−" : "";
-  for (std::size_t i = 0; i < digits.size(); ++i) {
-    if (i > 0 && i < whole && whole > 4 && (whole - i) % 3 == 0) text += "\u202F";
-    text += digits[i];
-  }
-  return text;
-}
-
-std::string FormatSignificant(double value, int digits) {
-  if (!std::isfinite(value)) return "–";
-  if (value == 0) return "0";
-  const std::string rounded = fmt::format("{:.{}e}", value, digits - 1);  // "-1.25e-09"
-  const std::size_t e = rounded.find('e');
-  const int exponent = std::stoi(rounded.substr(e + 1));
-  if (exponent >= -4 && exponent < 7)
-    return FormatNumber(value, std::max(0, digits - 1 - exponent));
-  return FormatNumber(std::stod(rounded.substr(0, e)), digits - 1) + "×" + PowerOfTen(exponent);
-}
-
-std::string FormatShort(double value, int digits) {
-  std::string text = FormatSignificant(value, digits);
-  const std::size_t end = std::min(text.find("×"), text.size());
-  const std::size_t point = text.find('.');
-  if (point >= end) return text;
-  const std::size_t last = text.find_last_not_of('0', end - 1);
-  const std::size_t keep = last == point ? point : last + 1;
-  return text.erase(keep, end - keep);
 }
 
 std::string ScaledUnit(std::string_view unit, int exponent) {
@@ -177,16 +153,6 @@ std::string ScaledUnit(std::string_view unit, int exponent) {
     return fmt::format("{}{}", kPrefixes[exponent / 3 + 4], unit);
   }
   return unit.empty() ? PowerOfTen(exponent) : PowerOfTen(exponent) + " " + std::string(unit);
-}
-
-std::string PowerOfTen(int exponent) {
-  constexpr std::array<std::string_view, 10> kDigits = {"⁰", "¹", "²", "³", "⁴",
-                                                        "⁵", "⁶", "⁷", "⁸", "⁹"};
-  if (exponent == 0) return "1";
-  if (exponent == 1) return "10";
-  std::string text = exponent < 0 ? "10⁻" : "10";
-  for (const char digit : std::to_string(std::abs(exponent))) text += kDigits[digit - '0'];
-  return text;
 }
 
 }  // namespace vmech::plot

@@ -4,12 +4,20 @@
 #include <string_view>
 #include <vector>
 
+#include "vmech/mechanisms/number_text.h"
+
 namespace vmech::plot {
+
+using vmech::FormatNumber;
+using vmech::FormatShort;
+using vmech::FormatSignificant;
+using vmech::PowerOfTen;
 
 /// How the numbers of an axis become lengths and labels.
 enum class ScaleType {
   kLinear,
   kDegrees,  ///< linear, with ticks at divisors and multiples of 90
+  kTurns,    ///< the same, labelled within the turn: 0, 180, 360, 180, 360 over two of them
   kLog,      ///< base ten; values that are not positive are left out
 };
 
@@ -35,20 +43,7 @@ struct Scale {
 /// [min, max]. A range that is empty or not finite is replaced by one that can be drawn.
 Scale MakeScale(ScaleType type, double min, double max, int target, bool rounded);
 
-/// "12 000", "−0.25": true minus, thin spaces between thousands from five digits on.
-std::string FormatNumber(double value, int decimals);
-
-/// The value to `digits` significant digits, written as FormatNumber does; scientific ("1.2×10⁻⁹")
-/// where that needs many zeros. "–" for a value that is not finite.
-std::string FormatSignificant(double value, int digits);
-
-/// FormatSignificant without zeros at the end: "15", "0.4".
-std::string FormatShort(double value, int digits);
-
 /// The unit for labels divided by 10^exponent: ("N", 3) gives "kN", ("mm", -6) gives "10⁻⁶ mm".
 std::string ScaledUnit(std::string_view unit, int exponent);
-
-/// "10⁻³".
-std::string PowerOfTen(int exponent);
 
 }  // namespace vmech::plot

@@ -32,6 +32,9 @@ std::string RequirementsInWords(const BearingRequirements& r) {
   if (std::isfinite(r.housing_max)) {
     words += fmt::format(", outer diameter of at most {} mm", Millimetres(r.housing_max));
   }
+  if (r.pair_life_hours) {
+    words += fmt::format(", {} of both together", FormatHours(*r.pair_life_hours));
+  }
   return words +
          fmt::format(", {} lubrication.", r.lubrication == Lubrication::kGrease ? "grease" : "oil");
 }
@@ -142,8 +145,11 @@ Markup JointSection(const LoadStudy& study, const BearingRequest& request,
   }
   section += html::ListOrParagraph(reasons);
   if (bearings.complete() && bearings.selections.size() > 1) {
-    section += html::Paragraph(fmt::format("Both together: {} at the same reliability.",
-                                           FormatHours(bearings.system_life_hours)));
+    const std::string life = fmt::format("Both together: {} of {} at the same reliability.",
+                                         FormatHours(bearings.system_life_hours),
+                                         FormatHours(bearings.asked_system_life));
+    section += bearings.met() ? html::Paragraph(life)
+                              : html::Notice(life + " That is too short.", html::Tone::kBad);
   }
   if (bearings.certainty == LoadCertainty::kDependsOnRule) {
     section += html::Notice(Markup("Statics does not determine all of this joint's load. The lives "

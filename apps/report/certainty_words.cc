@@ -7,6 +7,7 @@
 
 #include "vmech/apps/html/page.h"
 #include "vmech/apps/plot/scale.h"
+#include "vmech/dynamics/open_components.h"
 
 namespace vmech {
 namespace {
@@ -57,7 +58,7 @@ bool Any(const JointCertainty& certainty, Certainty verdict) {
 /// Joints whose sentences are the same but for the name.
 struct Group {
   JointType type;
-  JointCertainty certainty;
+  JointCertainty certainty, loaded;  ///< all verdicts, and those that matter
   std::vector<std::string> names;
 };
 
@@ -65,27 +66,45 @@ std::vector<Group> GroupJoints(const LoadStudy& study, const LoadStudyResult& re
   std::vector<Group> groups;
   for (size_t i = 0; i < result.certainty.size(); ++i) {
     const Joint& joint = study.mechanism.joints[i];
+    const JointCertainty loaded = VerdictsThatMatter(result, i);
     const auto same = std::find_if(groups.begin(), groups.end(), [&](const Group& group) {
-      return group.certainty == result.certainty[i] && HasAxis(group.type) == HasAxis(joint.type);
+      return group.certainty == result.certainty[i] && group.loaded == loaded &&
+             HasAxis(group.type) == HasAxis(joint.type);
     });
     if (same != groups.end()) {
       same->names.push_back(joint.name);
     } else {
-      groups.push_back({joint.type, result.certainty[i], {joint.name}});
+      groups.push_back({joint.type, result.certainty[i], loaded, {joint.name}});
     }
   }
   return groups;
 }
 
+/// Components that statics leaves open and that no load of the study reaches.
+std::string UnloadedInWords(const Group& group) {
+  JointCertainty unloaded = group.certainty;
+  for (size_t k = 0; k < unloaded.size(); ++k) {
+    if (group.loaded[k] == group.certainty[k]) unloaded[k] = Certainty::kCertain;
+  }
+  return ComponentsInWords(group.type, unloaded, Certainty::kNotDetermined);
+}
+
 Markup GroupInWords(const Group& group, ReactionRule rule) {
   Markup words = html::Element("strong", Enumerate(group.names)) + ": ";
-  const std::string open =
-      ComponentsInWords(group.type, group.certainty, Certainty::kNotDetermined);
+  const std::string open = ComponentsInWords(group.type, group.loaded, Certainty::kNotDetermined);
   const std::string singular = ComponentsInWords(group.type, group.certainty, Certainty::kSingular);
-  if (open.empty() && singular.empty()) return words + "every component is certain.";
+  const std::string unloaded = UnloadedInWords(group);
+  if (open.empty() && singular.empty() && unloaded.empty()) {
+    return words + "every component is certain.";
+  }
   if (!open.empty()) {
     words += open + " cannot be known from statics; the figures shown follow the rule ";
     words += html::Element("code", NameOf(rule)) + ". ";
+  }
+  if (!unloaded.empty()) {
+    words += unloaded +
+             ": left open by statics, but no load of this study acts there, and by every "
+             "rule the figure is zero; what misalignment or preload adds is not in it. ";
   }
   if (!singular.empty()) words += singular + ": singular at this pose, no finite value is right. ";
   return words + "The other components are certain.";

@@ -6,24 +6,18 @@
 #include <cmath>
 #include <numbers>
 
+#include "vmech/apps/dead_centres.h"
 #include "vmech/apps/read_motion.h"
+#include "vmech/apps/report/certainty_words.h"
+#include "vmech/mechanisms/freedoms.h"
 
 namespace vmech {
 namespace {
 
 constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
+constexpr std::string_view kDegree = "°";
 constexpr double kRpm = 30 / std::numbers::pi;  // per rad/s
 constexpr double kSteady = 1e-9;                // relative change of a speed that is rounding
-
-bool RunsOneWay(const PoseArray<PoseLoads>& poses) {
-  bool forward = true, backward = true;
-  for (size_t i = 1; i < poses.size(); ++i) {
-    const double step = poses[i].drives[0].position - poses[i - 1].drives[0].position;
-    forward = forward && step > 0;
-    backward = backward && step < 0;
-  }
-  return poses.size() > 1 && (forward || backward);
-}
 
 /// The pose nearest to a value of the axis.
 size_t PoseNear(const std::vector<double>& values, double value) {
@@ -36,7 +30,7 @@ size_t PoseNear(const std::vector<double>& values, double value) {
 /// Marks at quarters of the first turn, or of the whole passage if it is not an angle.
 void AddMarks(Cycle* cycle) {
   if (cycle->values.size() < 8) return;
-  const bool angle = cycle->axis.scale == plot::ScaleType::kDegrees;
+  const bool angle = cycle->axis.unit == kDegree;
   const double first = cycle->values.front(), last = cycle->values.back();
   const bool turns = angle && std::abs(last - first) > 350;
   const double quarter = turns ? std::copysign(90.0, last - first) : (last - first) / 4;
@@ -45,6 +39,29 @@ void AddMarks(Cycle* cycle) {
     const size_t pose = PoseNear(cycle->values, start + i * quarter);
     cycle->marks.push_back({pose, cycle->At(pose)});
   }
+}
+
+/// Angles that make a turn, or are beyond one, are counted from the turn in which they begin.
+void ShowWithinTurns(Cycle* cycle) {
+  const auto [least, greatest] = std::minmax_element(cycle->values.begin(), cycle->values.end());
+  const bool within = *greatest - *least < 350 && *least >= -360 && *greatest <= 360;
+  if (within) return;
+  const double shift = 360 * std::floor((*least + 1e-6) / 360);
+  for (double& value : cycle->values) value -= shift;
+  cycle->axis.scale = plot::ScaleType::kTurns;
+}
+
+/// A line at every dead centre in every turn, named where there is room.
+void AddDeadCentres(const LoadStudy& study, const LoadStudyResult& result, Cycle* cycle) {
+  constexpr size_t kNamed = 4;
+  const auto [least, greatest] = std::minmax_element(cycle->values.begin(), cycle->values.end());
+  for (const DeadCentre& centre : FindDeadCentres(study, result)) {
+    const double angle = centre.angle * kDegreesPerRadian;
+    double at = angle + 360 * std::ceil((*least - angle) / 360 - 1e-9);
+    for (; at <= *greatest; at += 360) cycle->dead_centres.push_back({at, "dead centre"});
+  }
+  if (cycle->dead_centres.size() <= kNamed) return;
+  for (plot::Station& station : cycle->dead_centres) station.label.clear();
 }
 
 std::string SpeedInWords(const PoseArray<PoseLoads>& poses, size_t drive, bool rotation) {
@@ -69,24 +86,42 @@ std::string SpeedInWords(const PoseArray<PoseLoads>& poses, size_t drive, bool r
 
 std::string Cycle::At(size_t pose) const {
   const double value = values[pose];
-  if (axis.scale == plot::ScaleType::kDegrees) return plot::FormatNumber(value, 0) + "°";
-  return plot::FormatShort(value, 3) + " " + axis.unit;
+  if (axis.unit != kDegree) return plot::FormatShort(value, 3) + " " + axis.unit;
+  if (axis.scale != plot::ScaleType::kTurns) return plot::FormatNumber(value, 0) + "°";
+  const double turns = std::abs(value - values.front()) / 360;
+  const bool ends = pose + 1 == values.size() && turns - std::floor(turns) < 1e-9;
+  const double before = std::floor(turns) - (ends ? 1 : 0);  // whole turns
+  const double angle = std::round(value) - 360 * std::floor(std::round(value) / 360);
+  return plot::FormatNumber(angle, 0) + "°" +
+         (before >= 1 ? fmt::format(", turn {:.0f}", before + 1) : "");
+}
+
+std::string Cycle::DeadCentreNear(size_t pose) const {
+  if (values.size() < 2) return "";
+  const double step = std::abs(values[1] - values[0]);
+  for (const plot::Station& centre : dead_centres) {
+    if (std::abs(centre.x - values[pose]) <= step / 2) return "dead centre";
+  }
+  return "";
 }
 
 Cycle CycleOf(const LoadStudy& study, const LoadStudyResult& result) {
   Cycle cycle;
   cycle.values.reserve(result.poses.size());
-  if (study.drives.size() == 1 && RunsOneWay(result.poses)) {
+  if (RunsOneWay(study, result)) {
     const JointDrive& drive = study.drives.front();
     const Joint& joint = study.mechanism.joints[static_cast<size_t>(drive.joint)];
     const bool rotation = IsRotation(joint.type, drive.freedom);
-    cycle.axis.title = (rotation ? "angle of " : "travel of ") + joint.name;
-    cycle.axis.unit = rotation ? "°" : "mm";
+    cycle.axis.title =
+        (rotation ? "angle of " : "travel of ") + NameOfFreedom(joint, drive.freedom);
+    cycle.axis.unit = rotation ? kDegree : "mm";
     cycle.axis.scale = rotation ? plot::ScaleType::kDegrees : plot::ScaleType::kLinear;
     const double unit = rotation ? kDegreesPerRadian : 1e3;
     for (const PoseLoads& pose : result.poses) {
       cycle.values.push_back(pose.drives[0].position * unit);
     }
+    if (rotation) ShowWithinTurns(&cycle);
+    AddDeadCentres(study, result, &cycle);
   } else {
     cycle.axis = {"time", "s"};
     for (const PoseLoads& pose : result.poses) cycle.values.push_back(pose.time);
@@ -95,13 +130,28 @@ Cycle CycleOf(const LoadStudy& study, const LoadStudyResult& result) {
   return cycle;
 }
 
+std::string DescribeDeadCentres(const LoadStudy& study, const LoadStudyResult& result) {
+  std::vector<std::string> items;
+  const std::vector<DeadCentre> centres = FindDeadCentres(study, result);
+  for (size_t j = 0; j < study.mechanism.joints.size(); ++j) {
+    std::vector<std::string> angles;
+    for (const DeadCentre& centre : centres) {
+      if (centre.joint != static_cast<int>(j)) continue;
+      angles.push_back(plot::FormatShort(centre.angle * kDegreesPerRadian, 4) + "°");
+    }
+    if (angles.empty()) continue;
+    items.push_back(study.mechanism.joints[j].name + " turns back at " + Enumerate(angles));
+  }
+  return Enumerate(items);
+}
+
 std::string DescribeMotion(const LoadStudy& study, const LoadStudyResult& result) {
   const PoseArray<PoseLoads>& poses = result.poses;
   std::string words;
   for (size_t i = 0; i < study.drives.size(); ++i) {
     const JointDrive& drive = study.drives[i];
     const Joint& joint = study.mechanism.joints[static_cast<size_t>(drive.joint)];
-    words += fmt::format("{}joint {} {}", i == 0 ? "" : ", ", joint.name,
+    words += fmt::format("{}joint {} {}", i == 0 ? "" : ", ", NameOfFreedom(joint, drive.freedom),
                          SpeedInWords(poses, i, IsRotation(joint.type, drive.freedom)));
   }
   if (study.hand) {

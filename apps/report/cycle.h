@@ -16,11 +16,18 @@ struct Cycle {
   std::vector<double> values;         ///< of every pose, in the unit of the axis
   std::vector<plot::PathMark> marks;  ///< four poses to be named in polar diagrams
 
-  /// The value at a pose with its unit, "215°".
+  std::vector<plot::Station> dead_centres = {};  ///< on the axis
+
+  /// The value at a pose with its unit, "215°"; angles within their turn, "15°, turn 2".
   std::string At(size_t pose) const;
+  /// "dead centre" if one is nearer to the pose than to its neighbours; else empty.
+  std::string DeadCentreNear(size_t pose) const;
 };
 
 Cycle CycleOf(const LoadStudy& study, const LoadStudyResult& result);
+
+/// "guide turns back at 0° and 180°": the dead centres by joints; empty if there are none.
+std::string DescribeDeadCentres(const LoadStudy& study, const LoadStudyResult& result);
 
 /// A sentence on how the mechanism moved, from the results.
 std::string DescribeMotion(const LoadStudy& study, const LoadStudyResult& result);

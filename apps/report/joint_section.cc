@@ -8,6 +8,7 @@
 
 #include "vmech/apps/html/page.h"
 #include "vmech/apps/report/certainty_words.h"
+#include "vmech/dynamics/open_components.h"
 
 namespace vmech {
 namespace {
@@ -16,14 +17,7 @@ using html::Markup;
 
 /// Of the largest load: less is not worth a label or a plot.
 constexpr double kWorthShowing = 1e-6;
-
-std::string Number(double value) {
-  return plot::FormatSignificant(value, 4);
-}
-
-std::string NumberOrZero(double value, double negligible) {
-  return std::abs(value) <= negligible ? "0" : Number(value);
-}
+constexpr double kRounding = 1e-9;  // of a peak
 
 bool HasPolarDiagram(JointType type) {
   return type == JointType::kRevolute || type == JointType::kCylindrical ||
@@ -55,8 +49,9 @@ plot::LinePlot ForcePlot(const LoadStudy& study, const LoadStudyResult& result, 
   plot.title = "Load over the cycle";
   plot.description = fmt::format(
       "Joint {}: force {} up to {} N, {} up to {} N.", study.mechanism.joints[joint].name, names[0],
-      NumberOrZero(peaks.radial, worth), names[1], NumberOrZero(peaks.axial, worth));
+      FormatLoad(peaks.radial, worth), names[1], FormatLoad(peaks.axial, worth));
   plot.x = cycle.axis;
+  plot.stations = cycle.dead_centres;
   plot.y = {"force", "N"};
   plot.series = {std::move(radial), std::move(axial)};
   return plot;
@@ -85,6 +80,7 @@ plot::LinePlot MomentPlot(const LoadStudyResult& result, const Cycle& cycle, siz
   plot.title = "Moments over the cycle";
   plot.description = "Moments about the origin of the second anchor, axes of the first.";
   plot.x = cycle.axis;
+  plot.stations = cycle.dead_centres;
   plot.y = {"moment", "N m"};
   for (const int axis : {0, 1, 2}) {
     plot::Series series{fmt::format("about {}", "xyz"[axis]), cycle.values, {}};
@@ -108,8 +104,15 @@ html::Tone ToneOf(Certainty certainty) {
   return html::Tone::kBad;
 }
 
+/// The verdict on a component, and what is left of it under the loads of the study.
+Markup VerdictBadge(Certainty verdict, Certainty matters) {
+  if (matters != verdict) return html::Badge("zero by every rule", html::Tone::kNeutral);
+  return html::Badge(NameOf(verdict), ToneOf(verdict));
+}
+
 Markup ComponentTable(const LoadStudyResult& result, size_t joint, double negligible) {
   constexpr std::array<std::string_view, 6> kNames = {"fx", "fy", "fz", "mx", "my", "mz"};
+  const JointCertainty matters = VerdictsThatMatter(result, joint);
   html::Table table;
   table.columns = {{"Component"}, {"Least", true}, {"Greatest", true}, {"Root mean square", true},
                    {"Unit"},      {"Verdict"}};
@@ -124,9 +127,9 @@ Markup ComponentTable(const LoadStudyResult& result, size_t joint, double neglig
     const double rms = std::sqrt(squares / static_cast<double>(result.poses.size()));
     const Certainty verdict = result.certainty[joint][static_cast<size_t>(i)];
     table.rows.push_back({html::Element("code", kNames[static_cast<size_t>(i)]),
-                          NumberOrZero(least, negligible), NumberOrZero(greatest, negligible),
-                          NumberOrZero(rms, negligible), i < 3 ? "N" : "N m",
-                          html::Badge(NameOf(verdict), ToneOf(verdict))});
+                          FormatLoad(least, negligible), FormatLoad(greatest, negligible),
+                          FormatLoad(rms, negligible), i < 3 ? "N" : "N m",
+                          VerdictBadge(verdict, matters[static_cast<size_t>(i)])});
   }
   return html::RenderTable(table);
 }
@@ -160,6 +163,10 @@ Markup JointSection(const LoadStudy& study, const LoadStudyResult& result, const
 
 }  // namespace
 
+std::string FormatLoad(double value, double negligible) {
+  return std::abs(value) <= negligible ? "0" : FormatSignificant(value, 4);
+}
+
 double Negligible(const LoadStudyResult& result) {
   double largest = 0;
   for (size_t i = 0; i < result.certainty.size(); ++i) {
@@ -172,7 +179,8 @@ double Negligible(const LoadStudyResult& result) {
 JointPeaks PeaksOf(const LoadStudyResult& result, size_t joint) {
   JointPeaks peaks;
   const auto raise = [](double value, size_t pose, double* peak, size_t* at) {
-    if (value > *peak) *peak = value, *at = pose;
+    if (value > *peak * (1 + kRounding)) *at = pose;  // not the next turn by rounding
+    *peak = std::max(*peak, value);
   };
   for (size_t i = 0; i < result.poses.size(); ++i) {
     const Wrenchd& wrench = result.poses[i].joints[joint];
@@ -189,16 +197,18 @@ Markup JointOverview(const LoadStudy& study, const LoadStudyResult& result, cons
                    {"Axial [N]", true}, {"at", true}, {"Tilting [N m]", true}, {"Statics"}};
   const double negligible = Negligible(result);
   const auto at = [&](double peak, size_t pose) {
-    return peak <= negligible ? Markup("–") : Markup(cycle.At(pose));
+    if (peak <= negligible) return Markup("–");
+    const std::string centre = cycle.DeadCentreNear(pose);
+    return Markup(cycle.At(pose) + (centre.empty() ? "" : ", " + centre));
   };
   for (size_t i = 0; i < study.mechanism.joints.size(); ++i) {
     const Joint& joint = study.mechanism.joints[i];
     const JointPeaks peaks = PeaksOf(result, i);
-    table.rows.push_back(
-        {html::Element("strong", joint.name), NameOf(joint.type),
-         NumberOrZero(peaks.radial, negligible), at(peaks.radial, peaks.radial_pose),
-         NumberOrZero(peaks.axial, negligible), at(peaks.axial, peaks.axial_pose),
-         NumberOrZero(peaks.tilting, negligible), CertaintyBadge(result.certainty[i])});
+    table.rows.push_back({html::Element("strong", joint.name), NameOf(joint.type),
+                          FormatLoad(peaks.radial, negligible), at(peaks.radial, peaks.radial_pose),
+                          FormatLoad(peaks.axial, negligible), at(peaks.axial, peaks.axial_pose),
+                          FormatLoad(peaks.tilting, negligible),
+                          CertaintyBadge(VerdictsThatMatter(result, i))});
   }
   return html::Heading(2, "Peak loads of the joints") + html::RenderTable(table) +
          html::Paragraph(

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "vmech/apps/html/markup.h"
 #include "vmech/apps/report/cycle.h"
 #include "vmech/dynamics/load_study.h"
@@ -17,6 +19,10 @@ JointPeaks PeaksOf(const LoadStudyResult& result, size_t joint);
 
 /// Forces [N], and moments [N m], up to this are rounding beside what the mechanism carries.
 double Negligible(const LoadStudyResult& result);
+
+/// A force or moment as it is shown on a page and on a terminal: four digits, thousands apart; "0"
+/// where it is negligible.
+std::string FormatLoad(double value, double negligible);
 
 /// One line per joint: its peaks, where they occur, and the verdict.
 html::Markup JointOverview(const LoadStudy& study, const LoadStudyResult& result,

@@ -13,6 +13,7 @@
 #include "vmech/apps/report/certainty_words.h"
 #include "vmech/apps/report/cycle.h"
 #include "vmech/apps/report/joint_section.h"
+#include "vmech/mechanisms/freedoms.h"
 
 namespace vmech {
 namespace {
@@ -62,13 +63,18 @@ bool DriveTurns(const LoadStudy& study, size_t drive) {
   return IsRotation(study.mechanism.joints[static_cast<size_t>(d.joint)].type, d.freedom);
 }
 
+std::string DriveName(const LoadStudy& study, size_t drive) {
+  const JointDrive& d = study.drives[drive];
+  return NameOfFreedom(study.mechanism.joints[static_cast<size_t>(d.joint)], d.freedom);
+}
+
 html::Tile LargestForceTile(const Report& report, const Cycle& cycle) {
   double largest = 0;
   size_t joint = 0, pose = 0;
   for (size_t i = 0; i < report.result.poses.size(); ++i) {
     for (size_t j = 0; j < report.result.poses[i].joints.size(); ++j) {
       const double force = report.result.poses[i].joints[j].force.norm();
-      if (force > largest) largest = force, joint = j, pose = i;
+      if (force > largest * (1 + kRounding)) largest = force, joint = j, pose = i;
     }
   }
   const std::string remark =
@@ -103,13 +109,11 @@ html::Tile DriveTile(const Report& report, const Cycle& cycle, size_t drive) {
   for (size_t i = 0; i < poses.size(); ++i) {
     const double force = poses[i].drives[drive].force;
     sum += force;
-    if (std::abs(force) > std::abs(peak)) peak = force, at = i;
+    if (std::abs(force) > std::abs(peak) * (1 + kRounding)) peak = force, at = i;
   }
-  const size_t joint = static_cast<size_t>(report.study.drives[drive].joint);
-  const std::string where =
-      report.study.drives.size() > 1
-          ? fmt::format("joint {}, ", report.study.mechanism.joints[joint].name)
-          : "";
+  const std::string where = report.study.drives.size() > 1
+                                ? fmt::format("joint {}, ", DriveName(report.study, drive))
+                                : "";
   const bool turns = DriveTurns(report.study, drive);
   const std::string_view unit = turns ? "N m" : "N";
   const double mean = sum / static_cast<double>(poses.size());
@@ -123,20 +127,29 @@ html::Tile HandTile(const Report& report, const Cycle& cycle) {
   size_t at = 0;
   for (size_t i = 0; i < report.result.poses.size(); ++i) {
     const double force = report.result.poses[i].hand.force.norm();
-    if (force > peak) peak = force, at = i;
+    if (force > peak * (1 + kRounding)) peak = force, at = i;
   }
   return {"Peak hand force", Number(peak), "N", "at " + cycle.At(at)};
+}
+
+/// "life 12 000 h of 10 000 h", of the pair where there are two.
+std::string LifeInWords(const JointBearings& bearings, const BearingRequirements& asked) {
+  const bool pair = bearings.selections.size() > 1;
+  return fmt::format("life {}{} of {}", pair ? "together " : "",
+                     Unbroken(FormatHours(bearings.system_life_hours)),
+                     Unbroken(FormatHours(pair ? asked.LifeOfPair() : asked.life_hours)));
 }
 
 html::Tile BearingTile(const Report& report, size_t index) {
   const BearingRequest& request = report.file.bearings[index];
   const JointBearings& bearings = report.outcome.bearings[index].bearings;
   const std::string& name = report.study.mechanism.joints[static_cast<size_t>(request.joint)].name;
-  const std::string remark =
-      bearings.complete()
-          ? fmt::format("life {} of {}", Unbroken(FormatHours(bearings.system_life_hours)),
-                        Unbroken(FormatHours(request.requirements.life_hours)))
-          : std::string("no bearing of the catalogue fits");
+  Markup remark = bearings.complete() ? Markup(LifeInWords(bearings, request.requirements))
+                                      : Markup("no bearing of the catalogue fits");
+  if (!bearings.met()) {
+    remark += " ";
+    remark += html::Badge(bearings.complete() ? "too short" : "not met", html::Tone::kBad);
+  }
   return {"Bearings at " + name, ChosenBearings(bearings), "", remark};
 }
 
@@ -160,6 +173,10 @@ Markup Header(const Report& report, const Cycle& cycle) {
                     Markup("Mechanism ") + html::Element("strong", report.study.mechanism.name) +
                         ". " + DescribeMotion(report.study, report.result),
                     "lead");
+  if (const std::string centres = DescribeDeadCentres(report.study, report.result);
+      !centres.empty()) {
+    header += html::Paragraph("Dead centres: " + centres + ".");
+  }
   if (!report.file.description.empty()) header += html::Paragraph(report.file.description);
   header += Headline(report, cycle);
   if (!report.result.warnings.empty()) {
@@ -180,11 +197,11 @@ plot::LinePlot DrivePlot(const LoadStudy& study, const LoadStudyResult& result, 
   plot::LinePlot plot;
   plot.title = turning ? "Drive torque" : "Drive force";
   plot.x = cycle.axis;
+  plot.stations = cycle.dead_centres;
   plot.y = {turning ? "torque" : "force", turning ? "N m" : "N"};
   for (size_t i = 0; i < study.drives.size(); ++i) {
     if (DriveTurns(study, i) != turning) continue;
-    const size_t joint = static_cast<size_t>(study.drives[i].joint);
-    plot::Series series{study.mechanism.joints[joint].name, cycle.values, {}};
+    plot::Series series{DriveName(study, i), cycle.values, {}};
     for (const PoseLoads& pose : result.poses) series.y.push_back(pose.drives[i].force);
     series.mark_peak = study.drives.size() < 4;
     plot.series.push_back(std::move(series));
@@ -198,6 +215,7 @@ plot::LinePlot HandPlot(const LoadStudyResult& result, const Cycle& cycle) {
   plot.title = "Force of the hand";
   plot.description = "What the hand exerts on the grasp, world axes.";
   plot.x = cycle.axis;
+  plot.stations = cycle.dead_centres;
   plot.y = {"force", "N"};
   for (const int axis : {0, 1, 2}) {
     plot::Series series{std::string(1, "xyz"[axis]), cycle.values, {}};
@@ -215,6 +233,7 @@ plot::LinePlot PosePlot(const LoadStudyResult& result, const Cycle& cycle, std::
   plot.title = std::move(title);
   plot.description = plot.title + " over the cycle.";
   plot.x = cycle.axis;
+  plot.stations = cycle.dead_centres;
   plot.y = std::move(y);
   plot.series = {std::move(series)};
   return plot;

@@ -13,6 +13,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "vmech/mechanisms/document.h"
+
 namespace vmech {
 
 std::string_view BuiltInCatalogueText();
@@ -22,7 +24,7 @@ namespace {
 constexpr std::array<std::string_view, 11> kColumns{
     "designation", "kind", "d_mm",         "D_mm",      "B_mm",       "C_kN",
     "C0_kN",       "f0",   "n_grease_rpm", "n_oil_rpm", "axial_limit"};
-constexpr std::array<std::string_view, 6> kRequired{"designation", "d_mm", "D_mm",
+constexpr std::array<std::string_view, 7> kRequired{"designation", "kind", "d_mm", "D_mm",
                                                     "B_mm",        "C_kN", "C0_kN"};
 
 std::string_view Trim(std::string_view text) {
@@ -73,8 +75,11 @@ class Parser {
     std::set<std::string_view> seen;
     for (std::string_view column : columns_) {
       if (std::find(kColumns.begin(), kColumns.end(), column) == kColumns.end()) {
-        Report(fmt::format("unknown column '{}'; the columns are {}", column,
-                           fmt::join(kColumns, ", ")));
+        const std::vector<std::string> known(kColumns.begin(), kColumns.end());
+        const std::string hint = DidYouMean(column, known);
+        Report(fmt::format(
+            "unknown column '{}'{}", column,
+            hint.empty() ? fmt::format("; the columns are {}", fmt::join(known, ", ")) : hint));
       }
       if (!seen.insert(column).second) Report(fmt::format("column '{}' appears twice", column));
     }
@@ -118,7 +123,7 @@ class Parser {
   BearingKind ReadKind() {
     const std::string_view word = row_["kind"];
     if (word == NameOf(BearingKind::kCylindricalRoller)) return BearingKind::kCylindricalRoller;
-    if (!word.empty() && word != NameOf(BearingKind::kDeepGrooveBall)) {
+    if (word != NameOf(BearingKind::kDeepGrooveBall)) {
       Report(fmt::format("kind is '{}', but must be {} or {}", word,
                          NameOf(BearingKind::kDeepGrooveBall),
                          NameOf(BearingKind::kCylindricalRoller)));

@@ -10,8 +10,8 @@ namespace vmech {
 
 /// A catalogue is a CSV file: comments start with #, the first other line names the columns.
 ///
-///   designation, d_mm, D_mm, B_mm, C_kN, C0_kN     required
-///   kind            deep_groove_ball (default) or cylindrical_roller
+///   designation, kind, d_mm, D_mm, B_mm, C_kN, C0_kN     required
+///   kind            deep_groove_ball or cylindrical_roller: no row is taken for a kind unsaid
 ///   f0              required for deep_groove_ball
 ///   n_grease_rpm, n_oil_rpm, axial_limit           may be empty: not checked then
 ///

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 #include <numbers>
+#include <tuple>
 
 #include "vmech/dynamics/bearings/rating_life.h"
 
@@ -20,15 +21,67 @@ double Peak(const std::vector<BearingForce>& forces, double (BearingForce::*part
   return peak;
 }
 
-double SystemLifeHours(const std::vector<BearingSelection>& selections) {
+double LifeOfAll(const std::vector<const Candidate*>& bearings) {
   std::vector<double> lives;
   double slope = WeibullSlope(BearingKind::kCylindricalRoller);
-  for (const BearingSelection& selection : selections) {
-    if (selection.chosen < 0) return 0;
-    lives.push_back(selection.best()->rating->modified_life_hours);
-    slope = std::min(slope, WeibullSlope(selection.best()->bearing.kind));
+  for (const Candidate* candidate : bearings) {
+    lives.push_back(candidate->rating->modified_life_hours);
+    slope = std::min(slope, WeibullSlope(candidate->bearing.kind));
   }
   return SystemLife(lives, slope);
+}
+
+double SystemLifeHours(const JointBearings& joint) {
+  if (!joint.complete()) return 0;
+  std::vector<const Candidate*> chosen;
+  for (const BearingSelection& selection : joint.selections) chosen.push_back(selection.best());
+  return LifeOfAll(chosen);
+}
+
+/// Two bearings that fit, by their places in the two selections.
+struct Pair {
+  int first, second;
+  double life;                     ///< of both together [h]
+  double outer_diameters, widths;  ///< sums [m]
+
+  bool IsSmallerThan(const Pair& other) const {
+    return std::tie(outer_diameters, widths, first, second) <
+           std::tie(other.outer_diameters, other.widths, other.first, other.second);
+  }
+};
+
+std::vector<Pair> FittingPairs(const std::vector<BearingSelection>& selections) {
+  std::vector<Pair> pairs;
+  const std::vector<Candidate>&a = selections[0].candidates, &b = selections[1].candidates;
+  for (size_t i = 0; i < a.size(); ++i) {
+    for (size_t j = 0; j < b.size(); ++j) {
+      if (!a[i].fits() || !b[j].fits()) continue;
+      pairs.push_back({static_cast<int>(i), static_cast<int>(j), LifeOfAll({&a[i], &b[j]}),
+                       a[i].bearing.outer_diameter + b[j].bearing.outer_diameter,
+                       a[i].bearing.width + b[j].bearing.width});
+    }
+  }
+  return pairs;
+}
+
+/// The smallest pair that lives long enough; if there is none, the one that lives longest.
+Pair ChoosePair(const std::vector<Pair>& pairs, double asked) {
+  return *std::min_element(pairs.begin(), pairs.end(), [asked](const Pair& a, const Pair& b) {
+    const double life_a = std::min(a.life, asked), life_b = std::min(b.life, asked);
+    return life_a != life_b ? life_a > life_b : a.IsSmallerThan(b);
+  });
+}
+
+/// Two bearings of which each is long-lived enough are not, together.
+void SettlePair(const BearingRequirements& requirements, JointBearings* joint) {
+  joint->system_life_hours = SystemLifeHours(*joint);
+  if (joint->selections.size() < 2) return;
+  joint->asked_system_life = requirements.LifeOfPair();
+  if (!joint->complete() || joint->met()) return;
+  const Pair pair = ChoosePair(FittingPairs(joint->selections), joint->asked_system_life);
+  joint->selections[0].Choose(pair.first, joint->rotation, requirements);
+  joint->selections[1].Choose(pair.second, joint->rotation, requirements);
+  joint->system_life_hours = pair.life;
 }
 
 void WarnOfTilting(const DutyCycle& cycle, JointBearings* joint) {
@@ -47,12 +100,12 @@ void WarnOfTilting(const DutyCycle& cycle, JointBearings* joint) {
   }
 }
 
-void WarnOfSystemLife(const BearingRequirements& requirements, JointBearings* joint) {
-  if (joint->complete() && joint->system_life_hours < requirements.life_hours) {
-    joint->warnings.push_back(
-        fmt::format("both bearings together reach {}, less than the {} that is asked of each",
-                    FormatHours(joint->system_life_hours), FormatHours(requirements.life_hours)));
-  }
+void WarnOfSystemLife(JointBearings* joint) {
+  if (!joint->complete() || joint->met()) return;
+  joint->warnings.push_back(fmt::format(
+      "both bearings together reach {} of the {} asked of them, and no pair of the catalogue that "
+      "has room lives longer; give more room, or ask less of the pair (pair_life_hours)",
+      FormatHours(joint->system_life_hours), FormatHours(joint->asked_system_life)));
 }
 
 std::string DescribeRotation(const RotationSummary& rotation) {
@@ -85,7 +138,8 @@ std::string JointBearings::BriefReport() const {
     text += (text.empty() ? "" : " | ") + selection.message;
   }
   if (complete() && selections.size() > 1) {
-    text += fmt::format(" | system life {}", FormatHours(system_life_hours));
+    text += fmt::format(" | system life {}{}", FormatHours(system_life_hours),
+                        met() ? "" : " of " + FormatHours(asked_system_life));
   }
   if (certainty == LoadCertainty::kDependsOnRule) text += " (depends on the chosen rule)";
   return text;
@@ -125,9 +179,9 @@ JointBearings SelectJointBearings(const DutyCycle& cycle, const Arrangement& arr
   for (const std::vector<BearingForce>& forces : joint.loads.forces) {
     joint.selections.push_back(SelectBearing(catalogue, forces, joint.rotation, requirements));
   }
-  joint.system_life_hours = SystemLifeHours(joint.selections);
+  SettlePair(requirements, &joint);
   WarnOfTilting(cycle, &joint);
-  WarnOfSystemLife(requirements, &joint);
+  WarnOfSystemLife(&joint);
   return joint;
 }
 

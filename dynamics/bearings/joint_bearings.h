@@ -27,9 +27,12 @@ struct JointBearings {
   double peak_tilting_moment = 0;  ///< greatest moment that a single bearing cannot take [N m]
   LoadCertainty certainty = LoadCertainty::kCertain;
   std::vector<std::string> warnings;  ///< about the joint as a whole
+  double asked_system_life = 0;       ///< of two bearings together [h]; zero for a single one
 
   /// True if every position has a bearing.
   bool complete() const;
+  /// True if every position has a bearing and all of them together live as long as is asked.
+  bool met() const { return complete() && system_life_hours >= asked_system_life; }
   /// One line: the choice at each position and the life of the system.
   std::string BriefReport() const;
   /// A page: how the joint turns, loads, choices, warnings, and the reason against every bearing
@@ -37,8 +40,11 @@ struct JointBearings {
   std::string FullReport() const;
 };
 
-/// Distributes the joint's wrench over the arrangement and selects a bearing for every position by
-/// itself; the bores may differ within the range of the shaft.
+/// Distributes the joint's wrench over the arrangement and selects a bearing for every position;
+/// the bores may differ within the range of the shaft. Two bearings that meet what is asked of each
+/// but together live shorter than is asked of the pair give way to the smallest pair that does:
+/// least sum of outer diameters, then of widths. If there is none, the pair that lives longest is
+/// taken and is not `met`.
 /// @throws std::invalid_argument if the cycle, the arrangement or the requirements are not valid.
 JointBearings SelectJointBearings(const DutyCycle& cycle, const Arrangement& arrangement,
                                   const BearingRequirements& requirements, LoadCertainty certainty,

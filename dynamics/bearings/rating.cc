@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "vmech/dynamics/bearings/rating_life.h"
+#include "vmech/mechanisms/number_text.h"
 
 namespace vmech {
 namespace {
@@ -47,6 +48,8 @@ void BearingRequirements::Validate() const {
   Require(housing_max > 0 && housing_max > shaft_min, "housing_max [m]", housing_max,
           "> 0 and above shaft_min");
   Require(life_hours >= 0 && std::isfinite(life_hours), "life_hours [h]", life_hours, ">= 0");
+  Require(LifeOfPair() >= 0 && std::isfinite(LifeOfPair()), "pair_life_hours [h]", LifeOfPair(),
+          ">= 0");
   Require(static_safety > 0 && std::isfinite(static_safety), "static_safety", static_safety, "> 0");
   ReliabilityFactor(reliability);
 }
@@ -174,9 +177,7 @@ std::string FormatHours(double hours) {
   if (std::isinf(hours)) return "unlimited";
   const double scale =
       std::pow(10, std::max(0.0, std::floor(std::log10(std::max(hours, 1.0))) - 2));
-  std::string digits = fmt::format("{:.0f}", std::round(hours / scale) * scale);
-  for (int at = static_cast<int>(digits.size()) - 3; at > 0; at -= 3) digits.insert(at, 1, ' ');
-  return digits + " h";
+  return FormatNumber(std::round(hours / scale) * scale, 0) + " h";
 }
 
 }  // namespace vmech

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,7 +13,7 @@ namespace vmech {
 
 enum class Lubrication { kGrease, kOil };
 
-/// What is asked of each bearing of a joint.
+/// What is asked of each bearing of a joint, and of two of them together.
 struct BearingRequirements {
   double shaft_min = 0;                                          ///< least bore [m], >= 0
   double shaft_max = std::numeric_limits<double>::infinity();    ///< greatest bore [m]
@@ -21,6 +22,10 @@ struct BearingRequirements {
   double reliability = 90;    ///< [%], 90 .. 99.95; raising it lengthens the L10 that is needed
   double static_safety = 1;   ///< least C0 / P0 [-], > 0; 2 for quiet running, 1.5 for shocks (SKF)
   Lubrication lubrication = Lubrication::kGrease;  ///< decides which limiting speed holds
+  /// Of two bearings together, L_nh at the same reliability [h], >= 0; without it `life_hours`.
+  std::optional<double> pair_life_hours = std::nullopt;
+
+  double LifeOfPair() const { return pair_life_hours.value_or(life_hours); }
 
   /// @throws std::invalid_argument with name, value and range.
   void Validate() const;
@@ -78,7 +83,7 @@ std::vector<std::string> RatingWarnings(const Bearing& bearing, const BearingRat
                                         const RotationSummary& rotation,
                                         const BearingRequirements& requirements);
 
-/// "26 900 h": three digits, thousands apart; "unlimited" if infinite.
+/// "26 900 h": three digits, as FormatNumber writes them; "unlimited" if infinite.
 std::string FormatHours(double hours);
 
 }  // namespace vmech

@@ -72,7 +72,16 @@ const Candidate* BearingSelection::best() const {
 std::string BearingSelection::ReasonAgainst(int candidate) const {
   if (!candidates[candidate].fits()) return Join(candidates[candidate].shortfalls);
   if (candidate == chosen) return "";
+  if (candidate < chosen) return "fits, but not in the smallest pair that lives long enough";
   return "fits, but is larger than " + candidates[chosen].bearing.designation;
+}
+
+void BearingSelection::Choose(int candidate, const RotationSummary& rotation,
+                              const BearingRequirements& requirements) {
+  const Candidate& choice = candidates[candidate];
+  chosen = candidate;
+  message = DescribeChoice(choice);
+  warnings = RatingWarnings(choice.bearing, *choice.rating, rotation, requirements);
 }
 
 BearingSelection SelectBearing(std::span<const Bearing> catalogue,
@@ -90,10 +99,7 @@ BearingSelection SelectBearing(std::span<const Bearing> catalogue,
   const auto smallest = std::find_if(candidates.begin(), candidates.end(),
                                      [](const Candidate& c) { return c.fits(); });
   if (smallest != candidates.end()) {
-    selection.chosen = static_cast<int>(smallest - candidates.begin());
-    selection.message = DescribeChoice(*smallest);
-    selection.warnings =
-        RatingWarnings(smallest->bearing, *smallest->rating, rotation, requirements);
+    selection.Choose(static_cast<int>(smallest - candidates.begin()), rotation, requirements);
     return selection;
   }
   selection.closest = FindClosest(candidates);

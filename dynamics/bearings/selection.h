@@ -28,8 +28,12 @@ struct BearingSelection {
 
   /// The chosen bearing, or the closest one; null if the catalogue is empty.
   const Candidate* best() const;
-  /// Why a candidate was not chosen: its shortfalls, or that it is larger than the choice.
+  /// Why a candidate was not chosen: its shortfalls, that it is larger than the choice, or that it
+  /// is too small for a partner.
   std::string ReasonAgainst(int candidate) const;
+  /// Takes a candidate that fits.
+  void Choose(int candidate, const RotationSummary& rotation,
+              const BearingRequirements& requirements);
 };
 
 /// Selects the smallest bearing (IsSmaller: least outer diameter, then least width, then greatest

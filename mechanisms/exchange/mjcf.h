@@ -6,7 +6,7 @@ namespace vmech {
 
 /// The mechanism at its start, whose loops should be closed, as a model of MuJoCo (MJCF, 2.2 and
 /// later). Its coordinates are those of the tree joints, counted from the start; a joint with
-/// several freedoms has a hinge or slide for each ("cross.1", "cross.2").
+/// several freedoms has a hinge or slide for each ("cross.rx", "cross.ry").
 ///
 /// Loops are closed by <equality>, which MuJoCo holds by stiff springs: at spherical joints if
 /// there are any, then at revolute ones.

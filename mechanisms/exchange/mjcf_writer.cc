@@ -7,6 +7,7 @@
 #include "vmech/mechanisms/exchange/mjcf.h"
 #include "vmech/mechanisms/exchange/start_pose.h"
 #include "vmech/mechanisms/exchange/xml_text.h"
+#include "vmech/mechanisms/freedoms.h"
 #include "vmech/mechanisms/mass_properties.h"
 
 namespace vmech {
@@ -139,9 +140,7 @@ class Writer {
       xml_.Element("joint", ball);
     }
     for (const StartAxis& axis : axes) {
-      const std::string name = FreedomsOf(joint.type) == 1
-                                   ? joint.name
-                                   : fmt::format("{}.{}", joint.name, axis.freedom + 1);
+      const std::string name = NameOfFreedom(joint, axis.freedom);
       AddFreedom(name, axis.rotates ? "hinge" : "slide", joint, axis, X_WB);
       if (joint.type != JointType::kScrew) continue;
       const std::string travel = name + " travel";

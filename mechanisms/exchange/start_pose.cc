@@ -25,7 +25,8 @@ void AppendChain(const Joint& joint, Mechanism* mechanism) {
   Posed X_LF = mechanism->anchor(first).X_LA;
   for (size_t i = 0; i < chain.size(); ++i) {
     const bool last = i + 1 == chain.size();
-    const std::string name = fmt::format("{}_{}", joint.name, i + 1);
+    const std::string name =
+        fmt::format("{}_{}", joint.name, NameOfFreedom(joint.type, static_cast<int>(i)));
     const Posed turn{ZOnto(chain[i].axis), Vector3d::Zero()};
     const AnchorId F = AddAnchor(&mechanism->links[first.link], first.link, name, X_LF * turn);
     if (!last) mechanism->links.push_back({name + "_link", {}, {}});

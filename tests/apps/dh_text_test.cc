@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "support/examples.h"
+#include "vmech/mechanisms/freedoms.h"
 
 namespace vmech {
 namespace {
@@ -45,7 +46,8 @@ std::vector<DhRow> Parsed(const std::string& text, const Mechanism& mechanism) {
       const std::string name = q.substr(0, q.find(':'));
       const size_t dot = name.find('.');
       row.joint = FindJoint(mechanism, name.substr(0, dot));
-      if (dot != name.npos) row.freedom = name[dot + 1] - '1';
+      const JointType type = mechanism.joints[row.joint].type;
+      if (dot != name.npos) row.freedom = FindFreedom(type, name.substr(dot + 1));
       row.motion = q.find(": d") != q.npos ? DhMotion::kTranslation : DhMotion::kRotation;
     }
     rows.push_back(row);

@@ -64,7 +64,7 @@ class Exchange(unittest.TestCase):
         return result
 
     def check(self, mechanism):
-        return json.loads(self.succeed("check", mechanism, "--json"))
+        return json.loads(self.succeed("check", mechanism, "--dh", "--json"))
 
     def write(self, name, text):
         (self.folder / name).write_text(text, encoding="utf-8")

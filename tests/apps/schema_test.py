@@ -16,7 +16,8 @@ BASE = {
                  {"link": "slider", "table": "gas.csv", "period": 360}],
     "rule": "stiffness",
     "bearings": {"main": {"positions": [-15, 15], "locating": 0, "shaft": [15, 30], "housing": 60,
-                          "life_hours": 10000, "reliability": 90, "static_safety": 1.5}},
+                          "life_hours": 10000, "pair_life_hours": 6000, "reliability": 90,
+                          "static_safety": 1.5}},
 }
 
 MALFORMED = [
@@ -32,7 +33,8 @@ MALFORMED = [
     ("rule", "guess"), ("colour", "red"), ("bearings.main.positions", []),
     ("bearings.main.positions", [1, 2, 3]), ("bearings.main.locating", 2),
     ("bearings.main.shaft", 15), ("bearings.main.housing", 0), ("bearings.main.reliability", 50),
-    ("bearings.main.static_safety", 0), ("bearings.main.lubrication", "water"),
+    ("bearings.main.static_safety", 0), ("bearings.main.pair_life_hours", -1),
+    ("motion.0.freedom", 0), ("motion.0.freedom", "rw"), ("bearings.main.lubrication", "water"),
 ]
 
 

@@ -192,9 +192,9 @@ class Trust(unittest.TestCase):
             along = [float(value) for value in x.strip("[]").split(",")]
             rows, _ = self.loads(
                 BLOCK.format(x=x),
-                "motion: [{{joint: p, freedom: 0, speed: {}, duration: 1, steps: 2}}, "
-                "{{joint: p, freedom: 1, speed: {}}}, {{joint: p, freedom: 2, speed: 0}}]\n".format(
-                    along[0], -along[1]))
+                "motion: [{{joint: p, freedom: x, speed: {}, duration: 1, steps: 2}}, "
+                "{{joint: p, freedom: y, speed: {}}}, "
+                "{{joint: p, freedom: rz, speed: 0}}]\n".format(along[0], -along[1]))
             force = [value for key, value in rows[0].items() if key.endswith(".force")
                      and "drive" in key]
             self.assertAlmostEqual(math.hypot(force[0], force[1]), 30, 9)

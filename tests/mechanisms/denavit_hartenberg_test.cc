@@ -202,7 +202,7 @@ TEST(DhTable, PutsLinksOfNoLengthBetweenTheFreedomsOfAJoint) {
   const DhTable table = DeduceDhTable(mechanism, FindSpanningTree(mechanism));
   ASSERT_EQ(table.rows.size(), 3u);
   const DhRow& between = table.rows[1];
-  EXPECT_EQ(between.axis, "u.2");
+  EXPECT_EQ(between.axis, "u.ry");
   EXPECT_EQ(between.link, -1);
   EXPECT_EQ(between.relation, AxesRelation::kIntersecting);
   EXPECT_NEAR(std::abs(between.parameters.alpha), kPi / 2, kRounding);

@@ -141,6 +141,8 @@ const Malformed kJoints[] = {
     {"TooFewStartValues",
      "revolute, connects: [crank/pin, coupler/crank], start: -49, viscous: 0.01",
      "cylindrical, connects: [crank/pin, coupler/crank], start: -49", 32, "a list of 2 numbers"},
+    {"UnknownFreedom", "start: 40", "start: {z: 40}", 31,
+     "no freedom 'z': a revolute joint has rz"},
     {"StartBeyondLimit", "start: 40", "start: 4000", 31, "outside the limits"},
     {"LimitsTheWrongWayRound", "[-720, 720]", "[720, -720]", 31, "is not below the upper one"},
     {"OneLimit", "[-720, 720]", "[720]", 31, "expected a pair [lower, upper]"},

@@ -159,6 +159,29 @@ TEST(Reader, ConvertsEachFreedomByItsKind) {
   EXPECT_NEAR(planar.load_friction.radius, 0.004, kRounding);
 }
 
+TEST(Reader, TakesValuesOfFreedomsByTheirNames) {
+  const std::string units = "length: mm, angle: deg, stiffness: N/mm, torque: N mm";
+  const Joint by_name = JointOf(
+      "type: planar, start: {y: 20, rz: 30}, limits: {x: [0, 100], rz: [null, 90], y: null},"
+      " viscous: {y: 2}, coulomb: {rz: 6}, spring: {stiffness: {rz: 9}, rest: {rz: 3}}",
+      units);
+  const Joint by_place = JointOf(
+      "type: planar, start: [0, 20, 30], limits: [[0, 100], null, [null, 90]],"
+      " viscous: [0, 2, 0], coulomb: [0, 0, 6], spring: {stiffness: [0, 0, 9], rest: [0, 0, 3]}",
+      units);
+  EXPECT_EQ(by_name.start, by_place.start);
+  EXPECT_EQ(by_name.lower, by_place.lower);
+  EXPECT_EQ(by_name.upper, by_place.upper);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(by_name.passive[k].stiffness, by_place.passive[k].stiffness);
+    EXPECT_EQ(by_name.passive[k].rest, by_place.passive[k].rest);
+    EXPECT_EQ(by_name.passive[k].viscous, by_place.passive[k].viscous);
+    EXPECT_EQ(by_name.passive[k].coulomb, by_place.passive[k].coulomb);
+  }
+  EXPECT_EQ(JointOf("type: revolute, start: {rz: 40}", units).start,
+            JointOf("type: revolute, start: 40", units).start);
+}
+
 TEST(Reader, TakesTheLengthsOfFrictionThatATypeHas) {
   const LoadFriction pin =
       JointOf(

@@ -81,6 +81,13 @@ TEST(Scale, RoundingNoiseOnAConstantIsNotMagnified) {
   EXPECT_EQ(scale.lower, 0);
 }
 
+TEST(MakeScale, LabelsTurnsWithinTheTurn) {
+  const Scale scale = MakeScale(ScaleType::kTurns, 0, 720, 5, false);
+  Strings labels;
+  for (const Tick& tick : scale.ticks) labels.push_back(tick.label);
+  EXPECT_EQ(labels, (Strings{"0", "180", "360", "180", "360"}));
+}
+
 TEST(FormatNumber, GroupsThousandsFromFiveDigitsOn) {
   EXPECT_EQ(FormatNumber(1234.56, 1), "1234.6");
   EXPECT_EQ(FormatNumber(-1234567, 0), "−1\u202F234\u202F567");

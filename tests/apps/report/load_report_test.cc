@@ -241,6 +241,51 @@ TEST(Cycle, RunsOverTimeWhereTheDriveTurnsBack) {
   EXPECT_EQ(CycleOf(example.study, example.result).axis.unit, "s");
 }
 
+/// The example, its motor from one angle to another [deg].
+Example Turned(double from, double to) {
+  Example example;
+  for (int i = 0; i < kPoses; ++i) {
+    const double degrees = from + (to - from) * i / (kPoses - 1);
+    example.result.poses[i].drives[0].position = degrees * std::numbers::pi / 180;
+  }
+  return example;
+}
+
+TEST(Cycle, CountsAnglesWithinTheirTurn) {
+  const Example forward = Turned(3630, 4350), backward = Turned(-10, -370);
+  const Cycle ahead = CycleOf(forward.study, forward.result);
+  EXPECT_EQ(ahead.At(0), "30°");
+  EXPECT_EQ(ahead.At(33), "0°");
+  EXPECT_EQ(ahead.At(40), "70°, turn 2");
+  EXPECT_NEAR(ahead.values.front(), 30, 1e-9);
+  const Cycle back = CycleOf(backward.study, backward.result);
+  EXPECT_EQ(back.At(0), "350°");
+  EXPECT_EQ(back.At(36), "170°");
+}
+
+TEST(Cycle, LeavesALeverAsItIs) {
+  const Example lever = Turned(-30, 42);
+  EXPECT_EQ(CycleOf(lever.study, lever.result).At(0), "−30°");
+}
+
+TEST(Cycle, MarksTheDeadCentresOfWhatStandsOnTheGround) {
+  Example example = Turned(-60, 300);
+  example.study.mechanism.joints.push_back(
+      MakeJoint("guide", JointType::kPrismatic, {0, 0}, {1, 0}));
+  for (PoseLoads& pose : example.result.poses) {
+    const double angle = pose.drives[0].position - 0.3;
+    JointSample guide = pose.joints[0];
+    guide.rate = {kSpeed * std::sin(angle), 0, 0};
+    example.result.certainty.resize(2);
+    pose.joints = {pose.joints[0], guide};
+  }
+  const std::string words = DescribeDeadCentres(example.study, example.result);
+  EXPECT_EQ(words, "guide turns back at 17.19° and 197.2°");  // 0.3 rad, and pi more
+  const Cycle cycle = CycleOf(example.study, example.result);
+  ASSERT_EQ(cycle.dead_centres.size(), 2u);
+  EXPECT_NEAR(cycle.dead_centres[0].x - cycle.values.front(), 60 + 17.19, 0.01);
+}
+
 TEST(Cycle, MarksTheQuartersOfATurn) {
   const Example example;
   const Cycle cycle = CycleOf(example.study, example.result);

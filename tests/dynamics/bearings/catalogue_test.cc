@@ -71,27 +71,30 @@ TEST(ParseCatalogue, TakesColumnsInAnyOrderAndLeavesOutOptionalOnes) {
 }
 
 TEST(ParseCatalogue, SaysWhereAndWhatIsWrong) {
-  const std::string header = "designation,d_mm,D_mm,B_mm,C_kN,C0_kN,f0\n";
-  const std::string good = "6004,20,42,12,9.36,5,13.9\n";
+  const std::string header = "kind,designation,d_mm,D_mm,B_mm,C_kN,C0_kN,f0\n";
+  const std::string ball = "deep_groove_ball,", good = ball + "6004,20,42,12,9.36,5,13.9\n";
   const struct {
     std::string text, message;
   } cases[] = {
       {"", "own.csv:1: the catalogue holds no bearings"},
       {header, "the catalogue holds no bearings"},
       {"designation,d_mm,D_mm,B_mm,C_kN,C0_kN,bore\n", "own.csv:1: unknown column 'bore'"},
-      {"designation,d_mm,D_mm,B_mm,C_kN\n", "own.csv:1: column 'C0_kN' is missing"},
+      {"designation,knd,d_mm,D_mm,B_mm,C_kN,C0_kN\n", "'knd'; did you mean 'kind'?"},
+      {"kind,designation,d_mm,D_mm,B_mm,C_kN\n", "own.csv:1: column 'C0_kN' is missing"},
+      {"designation,d_mm,D_mm,B_mm,C_kN,C0_kN,f0\n", "own.csv:1: column 'kind' is missing"},
       {"d_mm," + header, "own.csv:1: column 'd_mm' appears twice"},
-      {header + "6004,20,42\n", "own.csv:2: 3 fields, but the header names 7 columns"},
-      {header + "6004,20,42,12,9.36,5,13.9,1\n", "own.csv:2: 8 fields"},
-      {header + "# x\n6004,20 mm,42,12,9.36,5,13.9\n", "own.csv:3: d_mm is '20 mm'"},
-      {header + "6004,20,42,12,-9.36,5,13.9\n", "own.csv:2: C_kN is '-9.36'"},
-      {header + "6004,20,42,12,9.36,nan,13.9\n", "own.csv:2: C0_kN is 'nan'"},
-      {header + "6004,20,42,12,9.36,5,\n", "own.csv:2: f0 is ''"},
-      {header + "6004,20,42,12,1e999,5,14\n", "own.csv:2: C_kN is '1e999'"},
-      {header + ",20,42,12,9.36,5,13.9\n", "own.csv:2: designation is empty"},
-      {header + "6004,42,42,12,9.36,5,13.9\n", "own.csv:2: bore d_mm = 42 is not below"},
+      {header + ball + "6004,20,42\n", "own.csv:2: 4 fields, but the header names 8 columns"},
+      {header + ball + "6004,20,42,12,9.36,5,13.9,1\n", "own.csv:2: 9 fields"},
+      {header + "# x\n" + ball + "6004,20 mm,42,12,9.36,5,13.9\n", "own.csv:3: d_mm is '20 mm'"},
+      {header + ball + "6004,20,42,12,-9.36,5,13.9\n", "own.csv:2: C_kN is '-9.36'"},
+      {header + ball + "6004,20,42,12,9.36,nan,13.9\n", "own.csv:2: C0_kN is 'nan'"},
+      {header + ball + "6004,20,42,12,9.36,5,\n", "own.csv:2: f0 is ''"},
+      {header + ball + "6004,20,42,12,1e999,5,14\n", "own.csv:2: C_kN is '1e999'"},
+      {header + ball + ",20,42,12,9.36,5,13.9\n", "own.csv:2: designation is empty"},
+      {header + ball + "6004,42,42,12,9.36,5,13.9\n", "own.csv:2: bore d_mm = 42 is not below"},
       {header + good + good, "own.csv:3: designation '6004' appears twice"},
-      {"kind," + header + "spherical," + good, "own.csv:2: kind is 'spherical', but must be"},
+      {header + ",6004,20,42,12,9.36,5,13.9\n", "own.csv:2: kind is '', but must be"},
+      {header + "spherical,6004,20,42,12,9.36,5,13.9\n", "own.csv:2: kind is 'spherical', but"},
   };
   for (const auto& [text, message] : cases) {
     EXPECT_NE(MessageFor(text).find(message), std::string::npos) << MessageFor(text);
@@ -99,8 +102,9 @@ TEST(ParseCatalogue, SaysWhereAndWhatIsWrong) {
 }
 
 TEST(ParseCatalogue, ReportsEveryErrorAtOnce) {
-  const std::string message =
-      MessageFor("designation,d_mm,D_mm,B_mm,C_kN,C0_kN,f0\na,x,42,12,9,5,14\nb,20,42,12,9,y,14\n");
+  const std::string message = MessageFor(
+      "designation,kind,d_mm,D_mm,B_mm,C_kN,C0_kN,f0\n"
+      "a,deep_groove_ball,x,42,12,9,5,14\nb,deep_groove_ball,20,42,12,9,y,14\n");
   EXPECT_NE(message.find("own.csv:2: d_mm is 'x'"), std::string::npos) << message;
   EXPECT_NE(message.find("own.csv:3: C0_kN is 'y'"), std::string::npos) << message;
 }

@@ -55,6 +55,68 @@ TEST(SelectJointBearings, FillsBothPositionsAndRatesThemTogether) {
   EXPECT_NEAR(std::pow(joint.system_life_hours, -e), std::pow(a, -e) + std::pow(b, -e), 1e-15);
 }
 
+/// Two bearings beside the origin of which each lives 10 000 h, and the pair as long as is asked.
+JointBearings SelectPair(double pair_life, double housing) {
+  BearingRequirements requirements = Shaft15To30();
+  requirements.pair_life_hours = pair_life;
+  requirements.housing_max = housing;
+  return SelectJointBearings(TurningShaft(), {{-0.015, 0.015}, 0}, requirements,
+                             LoadCertainty::kCertain, BuiltInCatalogue());
+}
+
+TEST(SelectJointBearings, TakesTheSmallestPairThatLivesAsLongAsIsAsked) {
+  const JointBearings alone = SelectPair(0, 0.060);
+  ASSERT_TRUE(alone.met());
+  const double asked = 1.2 * alone.system_life_hours;
+  const JointBearings pair = SelectPair(asked, 0.060);
+  ASSERT_TRUE(pair.met()) << pair.BriefReport();
+  EXPECT_GE(pair.system_life_hours, asked);
+  EXPECT_TRUE(pair.warnings.empty());
+  const auto size = [](const JointBearings& joint) {
+    return joint.selections[0].best()->bearing.outer_diameter +
+           joint.selections[1].best()->bearing.outer_diameter;
+  };
+  EXPECT_GT(size(pair), size(alone));
+  // By hand: no other pair that fits and lives long enough is smaller.
+  for (const Candidate& a : pair.selections[0].candidates) {
+    for (const Candidate& b : pair.selections[1].candidates) {
+      if (!a.fits() || !b.fits()) continue;
+      const double e = 10.0 / 9, La = a.rating->modified_life_hours,
+                   Lb = b.rating->modified_life_hours;
+      if (std::pow(std::pow(La, -e) + std::pow(Lb, -e), -1 / e) < asked) continue;
+      EXPECT_GE(a.bearing.outer_diameter + b.bearing.outer_diameter, size(pair) - 1e-12);
+    }
+  }
+}
+
+TEST(SelectJointBearings, AsksOfThePairWhatIsAskedOfEachUnlessItIsAskedItself) {
+  BearingRequirements requirements = Shaft15To30();
+  requirements.life_hours = 50000;
+  const JointBearings joint =
+      SelectJointBearings(TurningShaft(), {{-0.015, 0.015}, 0}, requirements,
+                          LoadCertainty::kCertain, BuiltInCatalogue());
+  EXPECT_EQ(joint.asked_system_life, 50000);
+  EXPECT_EQ(joint.met(), joint.system_life_hours >= 50000);
+  EXPECT_EQ(Select({{0.02}, 0}, LoadCertainty::kCertain).asked_system_life, 0);
+}
+
+TEST(SelectJointBearings, APairThatFallsShortIsNotMetAndSaysSo) {
+  const JointBearings longest = SelectPair(1e7, 0.060);
+  EXPECT_TRUE(longest.complete());
+  EXPECT_FALSE(longest.met());
+  ASSERT_EQ(longest.warnings.size(), 1u);
+  EXPECT_NE(longest.warnings[0].find("10\u202F000\u202F000 h asked of them"), std::string::npos)
+      << longest.warnings[0];
+  EXPECT_NE(longest.BriefReport().find(" of 10\u202F000\u202F000 h"), std::string::npos);
+  for (const BearingSelection& selection : longest.selections) {
+    for (const Candidate& candidate : selection.candidates) {
+      if (!candidate.fits()) continue;
+      EXPECT_LE(candidate.rating->modified_life_hours,
+                selection.best()->rating->modified_life_hours);
+    }
+  }
+}
+
 TEST(SelectJointBearings, GivesTheOverhungBearingTheGreaterLoad) {
   // The force acts at 20 mm: beyond the bearing at 15 mm, which carries 35/30 of it.
   const JointBearings joint = Select({{-0.015, 0.015}, 0}, LoadCertainty::kCertain);

@@ -169,8 +169,8 @@ TEST(BearingRequirements, RefuseValuesOutOfRangeByName) {
 }
 
 TEST(FormatHours, KeepsThreeDigitsAndGroupsThousands) {
-  EXPECT_EQ(FormatHours(26861.8), "26 900 h");
-  EXPECT_EQ(FormatHours(1234567), "1 230 000 h");
+  EXPECT_EQ(FormatHours(26861.8), "26\u202F900 h");
+  EXPECT_EQ(FormatHours(1234567), "1\u202F230\u202F000 h");
   EXPECT_EQ(FormatHours(42.4), "42 h");
   EXPECT_EQ(FormatHours(0), "0 h");
   EXPECT_EQ(FormatHours(INFINITY), "unlimited");

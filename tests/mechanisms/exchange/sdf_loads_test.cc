@@ -8,6 +8,7 @@
 #include "driven_examples.h"
 #include "support/temp_folder.h"
 #include "vmech/mechanisms/exchange/sdf.h"
+#include "vmech/mechanisms/freedoms.h"
 
 namespace vmech {
 namespace {
@@ -31,7 +32,7 @@ Mechanism WithoutJointStiffnessAndLoadFriction(Mechanism mechanism) {
 
 /// The joint that has become of one: itself, or the last of the chain that it became.
 int JointAfter(const Mechanism& after, const std::string& name) {
-  for (const char* suffix : {"", "_joint", "_3", "_2"}) {
+  for (const char* suffix : {"", "_joint", "_rz", "_z"}) {
     if (const int joint = FindJoint(after, name + suffix); joint >= 0) return joint;
   }
   return -1;
@@ -39,7 +40,7 @@ int JointAfter(const Mechanism& after, const std::string& name) {
 
 /// The freedom that has become of one.
 int FreedomAfter(const Mechanism& after, const Joint& joint, int freedom, int* in_joint) {
-  const int chained = FindJoint(after, joint.name + "_" + std::to_string(freedom + 1));
+  const int chained = FindJoint(after, joint.name + "_" + NameOfFreedom(joint.type, freedom));
   *in_joint = FreedomsOf(joint.type) > 1 && chained >= 0 ? chained : JointAfter(after, joint.name);
   return chained >= 0 ? 0 : freedom;
 }
