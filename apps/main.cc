@@ -9,6 +9,7 @@
 
 #include "vmech/apps/commands.h"
 #include "vmech/apps/import_launcher.h"
+#include "vmech/apps/printable_streams.h"
 #include "vmech/mechanisms/document.h"
 #include "vmech/mechanisms/mechanism.h"
 
@@ -277,6 +278,7 @@ int Run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  vmech::PrintOnlyPrintableText();
   try {
     if (argc > 1 && std::string_view(argv[1]) == "import") vmech::BecomeImport(argv + 1);
     return Run(argc, argv);
