@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <span>
 #include <utility>
 
 #include "vmech/apps/dh_text.h"
@@ -36,11 +37,20 @@ std::vector<std::string> LoopJoints(const KinematicTree& tree, const Loop& loop)
   return names;
 }
 
+/// The nodes of a joint, which are neighbours; none if it is cut.
+std::span<const TreeNode> ChainOf(const KinematicTree& tree, int joint) {
+  const int last = tree.placements[joint].tree_node;
+  int first = last;
+  while (first > 0 && tree.nodes[first - 1].joint == joint) --first;
+  return last < 0 ? std::span<const TreeNode>()
+                  : std::span(tree.nodes).subspan(first, last - first + 1);
+}
+
 /// Coordinates of the tree joints in the assembled pose, in degrees and millimetres.
 std::string Position(const KinematicTree& tree, const VectorXd& q, int joint) {
   std::string text;
-  for (const TreeNode& node : tree.nodes) {
-    if (node.joint != joint || node.q < 0) continue;
+  for (const TreeNode& node : ChainOf(tree, joint)) {
+    if (node.q < 0) continue;
     if (!text.empty()) text += ", ";
     const JointType type = tree.mechanism.joints[joint].type;
     if (FreedomsOf(type) > 1 && node.motion != NodeMotion::kSpherical) {

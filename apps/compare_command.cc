@@ -17,8 +17,8 @@
 #include "vmech/apps/file_kind.h"
 #include "vmech/apps/mpi_session.h"
 #include "vmech/apps/option_error.h"
-#include "vmech/apps/output_folder.h"
 #include "vmech/apps/progress_bar.h"
+#include "vmech/apps/result_folder.h"
 #include "vmech/comparison/statistics.h"
 #include "vmech/comparison/target_maker.h"
 #include "vmech/mechanisms/document.h"
@@ -56,7 +56,7 @@ void CheckMechanisms(const Suite& suite) {
 }
 
 void PrintSummary(const Suite& suite, const std::vector<Result>& results,
-                  const OutputFolder& folder) {
+                  const ResultFolder& folder) {
   size_t width = 8;
   for (const Contestant solver : AllContestants()) width = std::max(width, solver.name().size());
   fmt::print("{}: {} rows, solved of each kind\n  {:<{}}", suite.name, results.size(), "", width);
@@ -86,6 +86,7 @@ int Compare(const CompareArguments& arguments, MpiSession* mpi) {
   }
   const std::filesystem::path by_name = arguments.suite.stem().string() + "-compare";
   const std::filesystem::path& folder_name = arguments.out.empty() ? by_name : arguments.out;
+  ResultFolder folder(folder_name, ResultKind::kComparison);
   Journal journal(folder_name, {suite.digest, DigestOfThisProgram(), VMECH_VERSION}, suite);
   const Spread spread = [&](const std::vector<std::string>& tasks, const Foreman& foreman) {
     mpi != nullptr ? mpi->Run(tasks, foreman)
@@ -96,7 +97,6 @@ int Compare(const CompareArguments& arguments, MpiSession* mpi) {
     ProgressBar bar("compare", RowsOf(suite, solvers), arguments.quiet);
     results = RunComparison(suite, solvers, spread, &journal, [&](size_t done) { bar.Show(done); });
   }
-  OutputFolder folder(folder_name);
   folder.Write("results.csv", ResultsTable(suite, results));
   folder.Write("summary.json", ComparisonSummary(suite, results, VMECH_VERSION));
   folder.Write("report.html", RenderComparisonReport(suite, results, VMECH_VERSION));

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "vmech/base/printable_text.h"
+
 namespace vmech {
 namespace {
 
@@ -105,6 +107,19 @@ class TableParser {
 const std::vector<double>* CsvTable::Find(std::string_view name) const {
   const auto found = std::find(names.begin(), names.end(), name);
   return found == names.end() ? nullptr : &columns[found - names.begin()];
+}
+
+std::string CsvCell(std::string_view text) {
+  const bool formula = !text.empty() &&
+                       std::string_view("=+-@\t\r\n").find(text.front()) != text.npos &&
+                       !ParseNumber(text);
+  std::string cell = (formula ? "'" : "") + PrintableText(text);
+  std::replace_if(
+      cell.begin(), cell.end(), [](char c) { return c == '\n' || c == '\t'; }, ' ');
+  if (cell.find_first_of(",\"") == cell.npos) return cell;
+  std::string quoted = "\"";
+  for (const char c : cell) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
 }
 
 CsvTable ParseCsvTable(std::string_view text, const std::string& name) {

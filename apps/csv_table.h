@@ -26,6 +26,11 @@ struct CsvTable {
 
 constexpr size_t kMaxTableBytes = size_t{256} << 20;
 
+/// A text as a cell of a CSV file, on one line and quoted where it must be. One that a spreadsheet
+/// would run as a formula - it begins with = + - @, a tab or a line break, and is no number - gets
+/// an apostrophe before it, by which spreadsheets know a text.
+std::string CsvCell(std::string_view text);
+
 /// @throws FileErrors with everything that is wrong. `name` stands for the file in messages.
 CsvTable ParseCsvTable(std::string_view text, const std::string& name);
 CsvTable ReadCsvTable(const std::filesystem::path& path);

@@ -6,11 +6,11 @@
 
 #include "vmech/apps/commands.h"
 #include "vmech/apps/file_kind.h"
-#include "vmech/apps/output_folder.h"
 #include "vmech/apps/progress_bar.h"
 #include "vmech/apps/report/cycle.h"
 #include "vmech/apps/report/joint_section.h"
 #include "vmech/apps/report/load_report.h"
+#include "vmech/apps/result_folder.h"
 #include "vmech/apps/study.h"
 #include "vmech/apps/study_reader.h"
 #include "vmech/apps/tables.h"
@@ -110,7 +110,7 @@ std::string BearingLines(const StudyFile& file, const BearingRequest& request,
   return text;
 }
 
-void PrintSummary(const StudyFile& file, const StudyOutcome& outcome, const OutputFolder& folder) {
+void PrintSummary(const StudyFile& file, const StudyOutcome& outcome, const ResultFolder& folder) {
   fmt::print("{}: {}\n{}\n", file.name, file.motion, outcome.loads.BriefReport());
   fmt::print("{}{}", JointLines(file, outcome.loads), RuleLine(file, outcome.loads));
   const std::string centres = DescribeDeadCentres(file.study, outcome.loads);
@@ -130,6 +130,8 @@ int RunLoads(const LoadsArguments& arguments) {
   if (arguments.tolerance) file.study.mechanism.tolerance = *arguments.tolerance;
   LoadStudyOptions options;
   options.threads = Threads(arguments);
+  const std::filesystem::path by_name = arguments.study.stem().string() + "-loads";
+  ResultFolder folder(arguments.out.empty() ? by_name : arguments.out, ResultKind::kLoads);
   StudyOutcome outcome;
   {
     ProgressBar bar("loads", file.study.times.size(), arguments.quiet);
@@ -139,8 +141,6 @@ int RunLoads(const LoadsArguments& arguments) {
     };
     outcome = RunNamed(file, options);
   }
-  const std::filesystem::path folder_name = arguments.study.stem().string() + "-loads";
-  OutputFolder folder(arguments.out.empty() ? folder_name : arguments.out);
   folder.Write("loads.csv", LoadsTable(file, outcome.loads, options.threads));
   folder.Write("motion.csv", MotionTable(file, outcome.loads, options.threads));
   folder.Write("certainty.csv", CertaintyTable(file, outcome.loads));

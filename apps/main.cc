@@ -13,6 +13,7 @@
 #include "vmech/apps/completion.h"
 #include "vmech/apps/import_launcher.h"
 #include "vmech/apps/option_error.h"
+#include "vmech/apps/printable_streams.h"
 #include "vmech/apps/suggestion.h"
 #include "vmech/mechanisms/document.h"
 #include "vmech/mechanisms/mechanism.h"
@@ -354,6 +355,7 @@ std::vector<std::string> WithoutHelpCommand(std::vector<std::string> words) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  vmech::PrintOnlyPrintableText();
   try {
     const std::vector<std::string> words = WithoutHelpCommand({argv + 1, argv + argc});
     if (!words.empty() && words[0] == "import") Import(words);

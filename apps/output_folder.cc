@@ -1,14 +1,26 @@
 #include "vmech/apps/output_folder.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
-#include <fstream>
+#include <cerrno>
 #include <system_error>
 #include <utility>
 
+#include "vmech/apps/write_whole.h"
 #include "vmech/mechanisms/document.h"
 
 namespace vmech {
+namespace {
+
+[[noreturn]] void ThrowUnwritable(const std::filesystem::path& file, const std::error_code& why) {
+  throw FileErrors(file.string(),
+                   fmt::format("cannot be written: {}; give another place with --out, or make room",
+                               why.message()));
+}
+
+}  // namespace
 
 OutputFolder::OutputFolder(std::filesystem::path folder) : folder_(std::move(folder)) {
   std::error_code error;
@@ -22,34 +34,34 @@ OutputFolder::OutputFolder(std::filesystem::path folder) : folder_(std::move(fol
 
 OutputFolder::~OutputFolder() {
   std::error_code ignored;
-  for (const std::string& name : pending_) std::filesystem::remove(Temporary(name), ignored);
+  for (const Pending& file : pending_) std::filesystem::remove(Temporary(file.name), ignored);
   // Takes away an empty folder only.
-  if (made_ && !pending_.empty()) std::filesystem::remove(folder_, ignored);
+  if (made_) std::filesystem::remove(folder_, ignored);
 }
 
 std::filesystem::path OutputFolder::Temporary(const std::string& name) const {
-  return folder_ / ("." + name + ".part");
-}
-
-void OutputFolder::ThrowUnwritable(const std::string& name) const {
-  throw FileErrors((folder_ / name).string(),
-                   "cannot be written; is there room, the right to, and no folder of this name? "
-                   "Give another place with --out");
+  return folder_ / (name + kUnfinished);
 }
 
 void OutputFolder::Write(const std::string& name, const std::string& text) {
-  pending_.push_back(name);
-  std::ofstream file(Temporary(name), std::ios::binary);
-  file.write(text.data(), static_cast<std::streamsize>(text.size()));
-  file.close();
-  if (!file || std::filesystem::is_directory(folder_ / name)) ThrowUnwritable(name);
+  try {
+    if (std::filesystem::is_directory(folder_ / name)) {
+      throw std::system_error(std::make_error_code(std::errc::is_a_directory));
+    }
+    pending_.push_back({name, PathLock(Temporary(name), O_WRONLY | O_CREAT, folder_ / name)});
+    const int file = pending_.back().lock.file();
+    if (ftruncate(file, 0) != 0) throw std::system_error(errno, std::generic_category());
+    WriteWhole(file, text);
+  } catch (const std::system_error& error) {
+    ThrowUnwritable(folder_ / name, error.code());
+  }
 }
 
 void OutputFolder::Commit() {
-  for (const std::string& name : pending_) {
+  for (const Pending& file : pending_) {
     std::error_code error;
-    std::filesystem::rename(Temporary(name), folder_ / name, error);
-    if (error) ThrowUnwritable(name);
+    std::filesystem::rename(Temporary(file.name), folder_ / file.name, error);
+    if (error) ThrowUnwritable(folder_ / file.name, error);
   }
   pending_.clear();
 }

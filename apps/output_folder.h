@@ -4,10 +4,17 @@
 #include <string>
 #include <vector>
 
+#include "vmech/apps/path_lock.h"
+
 namespace vmech {
 
-/// Files of one result, written together: all of them are first written beside their places and
-/// then renamed, so that a full disk or an interruption leaves no half-written file.
+/// What stands beside a file or folder while it is written, under its name and this. What a killed
+/// run leaves behind under it goes with the next run that writes the same.
+inline constexpr const char* kUnfinished = ".vmech-unfinished";
+
+/// Files put into a folder of the user's: all of them are first written beside their places and
+/// then renamed, so that a full disk or an interruption leaves no half-written file. A result that
+/// has a folder of its own is a ResultFolder.
 class OutputFolder {
  public:
   /// Makes the folder and those above it. @throws FileErrors if that cannot be done.
@@ -16,7 +23,7 @@ class OutputFolder {
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
-  /// @throws FileErrors if it cannot be written.
+  /// @throws FileErrors if it cannot be written, or another process is writing it.
   void Write(const std::string& name, const std::string& text);
   /// Puts all files in their places.
   /// @throws FileErrors if that cannot be done.
@@ -25,13 +32,15 @@ class OutputFolder {
   const std::filesystem::path& path() const { return folder_; }
 
  private:
+  struct Pending {
+    std::string name;
+    PathLock lock;
+  };
   std::filesystem::path Temporary(const std::string& name) const;
-
-  [[noreturn]] void ThrowUnwritable(const std::string& name) const;
 
   std::filesystem::path folder_;
   bool made_ = false;  ///< the folder did not exist before
-  std::vector<std::string> pending_;
+  std::vector<Pending> pending_;
 };
 
 }  // namespace vmech

@@ -3,9 +3,18 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <tuple>
 #include <utility>
 
 namespace vmech {
+namespace {
+
+/// Not by way of stderr, where nothing that moves the cursor comes through.
+void Draw(const std::string& text) {
+  std::ignore = write(STDERR_FILENO, text.data(), text.size());
+}
+
+}  // namespace
 
 ProgressBar::ProgressBar(std::string what, size_t total, bool quiet)
     : what_(std::move(what)),
@@ -15,7 +24,7 @@ ProgressBar::ProgressBar(std::string what, size_t total, bool quiet)
       last_(start_) {}
 
 ProgressBar::~ProgressBar() {
-  if (shown_) fmt::print(stderr, "\r\033[K");
+  if (shown_) Draw("\r\033[K");
 }
 
 void ProgressBar::Show(size_t done) {
@@ -27,10 +36,9 @@ void ProgressBar::Show(size_t done) {
   shown_ = true;
   const double share = static_cast<double>(done) / static_cast<double>(total_);
   const double elapsed = std::chrono::duration<double>(now - start_).count();
-  fmt::print(stderr, "\r{} [{:<{}}] {:3.0f} %  {:.0f} s left ", what_,
-             std::string(static_cast<size_t>(share * kWidth), '#'), kWidth, 100 * share,
-             share > 0 ? elapsed * (1 - share) / share : 0.0);
-  fflush(stderr);
+  Draw(fmt::format("\r{} [{:<{}}] {:3.0f} %  {:.0f} s left ", what_,
+                   std::string(static_cast<size_t>(share * kWidth), '#'), kWidth, 100 * share,
+                   share > 0 ? elapsed * (1 - share) / share : 0.0));
 }
 
 }  // namespace vmech

@@ -9,6 +9,7 @@
 #include <iterator>
 #include <thread>
 
+#include "vmech/apps/csv_table.h"
 #include "vmech/mechanisms/freedoms.h"
 
 namespace vmech {
@@ -16,14 +17,6 @@ namespace {
 
 constexpr const char* kComponents[] = {"fx", "fy", "fz", "mx", "my", "mz"};
 constexpr size_t kChunk = 256;  // rows a thread writes at a time
-
-/// A CSV field: quoted where it must be.
-std::string Field(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
 
 /// A growing row of numbers.
 class Row {
@@ -84,7 +77,7 @@ std::string DriveColumn(const StudyFile& file, size_t drive, const char* what) {
 std::string LoadsHeader(const StudyFile& file) {
   const LoadStudy& study = file.study;
   std::string header = "t";
-  auto add = [&](const std::string& name) { header += "," + Field(name); };
+  auto add = [&](const std::string& name) { header += "," + CsvCell(name); };
   for (size_t k = 0; k < study.drives.size(); ++k) add(DriveColumn(file, k, "position"));
   for (const Joint& joint : study.mechanism.joints) {
     for (const char* component : kComponents) add(joint.name + "." + component);
@@ -138,7 +131,7 @@ std::string MotionTable(const StudyFile& file, const LoadStudyResult& result, in
     if (static_cast<int>(l) == mechanism.ground) continue;
     for (const char* column : {"x", "y", "z", "qw", "qx", "qy", "qz", "vx", "vy", "vz", "wx", "wy",
                                "wz", "ax", "ay", "az", "alphax", "alphay", "alphaz"}) {
-      header += "," + Field(mechanism.links[l].name + "." + column);
+      header += "," + CsvCell(mechanism.links[l].name + "." + column);
     }
   }
   const size_t links = mechanism.links.size();
@@ -162,8 +155,8 @@ std::string CertaintyTable(const StudyFile& file, const LoadStudyResult& result)
   std::string text = "joint,component,verdict\n";
   for (size_t j = 0; j < result.certainty.size(); ++j) {
     for (int k = 0; k < 6; ++k) {
-      text += fmt::format("{},{},{}\n", Field(file.study.mechanism.joints[j].name), kComponents[k],
-                          NameOf(result.certainty[j][k]));
+      text += fmt::format("{},{},{}\n", CsvCell(file.study.mechanism.joints[j].name),
+                          kComponents[k], NameOf(result.certainty[j][k]));
     }
   }
   return text;
@@ -184,12 +177,12 @@ std::string BearingsTable(const StudyFile& file, const StudyOutcome& outcome) {
       const Bearing& b = best->bearing;
       text += fmt::format(
           "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
-          Field(file.study.mechanism.joints[request.joint].name), request.arrangement.positions[k],
-          Field(b.designation), best->fits() ? "yes" : "no", b.bore, b.outer_diameter, b.width,
-          b.dynamic_rating, b.static_rating, rating.mean_load, rating.peak_load, rating.peak_static,
-          rating.modified_life_hours, rating.static_safety,
+          CsvCell(file.study.mechanism.joints[request.joint].name),
+          request.arrangement.positions[k], CsvCell(b.designation), best->fits() ? "yes" : "no",
+          b.bore, b.outer_diameter, b.width, b.dynamic_rating, b.static_rating, rating.mean_load,
+          rating.peak_load, rating.peak_static, rating.modified_life_hours, rating.static_safety,
           bearings.certainty == LoadCertainty::kCertain ? "certain" : "depends on the rule",
-          Field(selection.message));
+          CsvCell(selection.message));
     }
   }
   return text;

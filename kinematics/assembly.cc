@@ -9,6 +9,7 @@
 
 #include "vmech/kinematics/closure.h"
 #include "vmech/kinematics/linear_algebra.h"
+#include "vmech/kinematics/loop_clusters.h"
 #include "vmech/kinematics/loops.h"
 #include "vmech/kinematics/mobility.h"
 #include "vmech/kinematics/validity.h"
@@ -53,15 +54,14 @@ class PenaltyIteration {
   bool Step() {
     const VectorXd departure = Departure(q_);
     const MatrixXd C = ScaledJacobian();
-    const VectorXd gradient = coordinate_weight_.cwiseProduct(departure) +
-                              options_.penalty * (C.transpose() * (ScaledErrors() + shift_));
+    const VectorXd wanted = ScaledErrors() + shift_;
     const double merit = Merit();
     const VectorXd q_before = q_;
     for (int attempt = 0; attempt < 30; ++attempt) {
-      MatrixXd H = options_.penalty * C.transpose() * C;
-      H.diagonal() += (1 + damping_) * coordinate_weight_;
+      const VectorXd dq =
+          PenaltyStep(C, wanted, (1 + damping_) / options_.penalty, departure / (1 + damping_));
       q_ = q_before;
-      Integrate(tree_, Bounded(free_.cwiseProduct(SolveFree(H, gradient))), &q_);
+      Integrate(tree_, Bounded(dq), &q_);
       Evaluate();
       if (Merit() < merit) {
         damping_ *= 0.2;
@@ -77,10 +77,8 @@ class PenaltyIteration {
 
   /// Closes what is left by the shortest step, C dq = e2.
   void CloseStep() {
-    const MatrixXd C = ScaledJacobian();
-    MatrixXd H = C.transpose() * C;
-    H.diagonal() += kShortestStep * coordinate_weight_;
-    Integrate(tree_, free_.cwiseProduct(SolveFree(H, C.transpose() * ScaledErrors())), &q_);
+    const VectorXd zero = VectorXd::Zero(tree_.nv);
+    Integrate(tree_, PenaltyStep(ScaledJacobian(), ScaledErrors(), kShortestStep, zero), &q_);
     Evaluate();
   }
 
@@ -129,8 +127,22 @@ class PenaltyIteration {
     return size > limit ? VectorXd(dq * (limit / size)) : dq;
   }
 
-  VectorXd SolveFree(const MatrixXd& H, const VectorXd& gradient) const {
-    return SolveSymmetric(H, free_.cwiseProduct(gradient));
+  /// minimise |C x - e|^2 + weight |x - x0|^2_W over what may move, W the coordinate weights: of
+  /// x = H^-1 (C' e + weight W x0), H = C' C + weight W, and
+  /// x = x0 + W^-1 C' z, (C W^-1 C' + weight 1) z = e - C x0, the one with the smaller matrix.
+  VectorXd PenaltyStep(const MatrixXd& C, const VectorXd& e, double weight,
+                       const VectorXd& x0) const {
+    const VectorXd& W = coordinate_weight_;
+    if (C.rows() < C.cols()) {
+      const MatrixXd D = C * W.cwiseInverse().asDiagonal();
+      MatrixXd M = D * C.transpose();
+      M.diagonal().array() += weight;
+      return free_.cwiseProduct(x0 + D.transpose() * SolveSymmetric(M, e - C * x0));
+    }
+    MatrixXd H = C.transpose() * C;
+    H.diagonal() += weight * W;
+    return free_.cwiseProduct(
+        SolveSymmetric(H, C.transpose() * e + weight * W.cwiseProduct(free_.cwiseProduct(x0))));
   }
 
   const KinematicTree& tree_;
@@ -255,6 +267,38 @@ void TryOtherStarts(const KinematicTree& tree, const AssemblyOptions& options,
   }
 }
 
+/// Assemble for loops that belong together.
+AssemblySummary AssembleCluster(const KinematicTree& tree, const AssemblyOptions& options,
+                                VectorXd* q) {
+  AssemblySummary summary;
+  std::optional<PenaltyIteration> best;
+  best.emplace(tree, options, *q, *q);
+  summary.start_error = best->error();
+  summary.iterations = CloseLoops(options, &*best);
+  if (best->error() > kRounding) TryOtherStarts(tree, options, *q, &best, &summary);
+  *q = best->q();
+  summary.error = best->error();
+  summary.closed = summary.error <= options.tolerance;
+  DescribeError(tree, best->ws(), &summary);
+  if (!summary.closed) summary.message = FailureMessage(tree, summary);
+  return summary;
+}
+
+/// What is wrong with the whole is what is wrong with the worst of its clusters.
+void Enter(const AssemblySummary& part, int worst_joint, AssemblySummary* whole) {
+  if (whole->worst_joint < 0 || part.error > whole->error) {
+    whole->error = part.error;
+    whole->worst_joint = worst_joint;
+    whole->worst_distance = part.worst_distance;
+    whole->worst_angle = part.worst_angle;
+    whole->message = part.message;
+  }
+  whole->closed = whole->closed && part.closed;
+  whole->iterations += part.iterations;
+  whole->start_error = std::max(whole->start_error, part.start_error);
+  whole->starts = std::max(whole->starts, part.starts);
+}
+
 }  // namespace
 
 AssemblyOptions AssemblyOptions::Nearby() {
@@ -281,21 +325,21 @@ AssemblySummary Assemble(const KinematicTree& tree, const AssemblyOptions& optio
   options.Validate();
   RequireCoordinates("Assemble: q", tree, *q);
   RequireVelocities("AssemblyOptions: fixed", tree, options.fixed);
+  std::vector<bool> fixed(tree.nv, false);
+  for (const int v : options.fixed) fixed[v] = true;
   AssemblySummary summary;
-  if (tree.loops.empty()) {
-    summary.closed = true;
-    return summary;
+  summary.closed = true;
+  for (const LoopCluster& cluster : SplitLoops(tree)) {
+    AssemblyOptions of_cluster = options;
+    of_cluster.fixed.clear();
+    for (int v = 0; v < cluster.tree.nv; ++v) {
+      if (fixed[cluster.v[v]]) of_cluster.fixed.push_back(v);
+    }
+    VectorXd part = (*q)(cluster.q);
+    const AssemblySummary result = AssembleCluster(cluster.tree, of_cluster, &part);
+    (*q)(cluster.q) = part;
+    Enter(result, cluster.joints[result.worst_joint], &summary);
   }
-  std::optional<PenaltyIteration> best;
-  best.emplace(tree, options, *q, *q);
-  summary.start_error = best->error();
-  summary.iterations = CloseLoops(options, &*best);
-  if (best->error() > kRounding) TryOtherStarts(tree, options, *q, &best, &summary);
-  *q = best->q();
-  summary.error = best->error();
-  summary.closed = summary.error <= options.tolerance;
-  DescribeError(tree, best->ws(), &summary);
-  if (!summary.closed) summary.message = FailureMessage(tree, summary);
   return summary;
 }
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "vmech/kinematics/closure.h"
+#include "vmech/kinematics/loop_clusters.h"
 #include "vmech/kinematics/loops.h"
 #include "vmech/kinematics/mobility.h"
 
@@ -16,38 +17,16 @@ constexpr double kWidestRounding = 1e-2;  // of a pivot
 constexpr double kSmallestStep = 2e-15;   // rounding of the machine
 constexpr int kClosingSteps = 12;
 
-/// Sets of loops that have velocities in common, each by the velocities that move it.
-std::vector<std::vector<int>> LoopClusters(const KinematicTree& tree) {
-  std::vector<std::vector<int>> clusters;
-  for (const Loop& loop : tree.loops) {
-    std::vector<int> merged;
-    for (const LoopColumn& c : loop.columns) merged.push_back(c.v);
-    std::vector<std::vector<int>> apart;
-    for (std::vector<int>& cluster : clusters) {
-      const bool meets = std::any_of(cluster.begin(), cluster.end(), [&](int v) {
-        return std::find(merged.begin(), merged.end(), v) != merged.end();
-      });
-      if (!meets) {
-        apart.push_back(std::move(cluster));
-      } else {
-        merged.insert(merged.end(), cluster.begin(), cluster.end());
-      }
-    }
-    apart.push_back(std::move(merged));
-    clusters = std::move(apart);
-  }
-  return clusters;
-}
-
 /// How many clusters have velocities that take part in the motions N [nv, motions].
-size_t CountMobile(const std::vector<std::vector<int>>& clusters, const MatrixXd& N) {
+size_t CountMobile(const std::vector<LoopCluster>& clusters, const MatrixXd& N) {
   constexpr double kMoves = 1e-6;
   return static_cast<size_t>(
-      std::count_if(clusters.begin(), clusters.end(), [&](const std::vector<int>& cluster) {
-        return std::any_of(cluster.begin(), cluster.end(),
+      std::count_if(clusters.begin(), clusters.end(), [&](const LoopCluster& cluster) {
+        return std::any_of(cluster.v.begin(), cluster.v.end(),
                            [&](int v) { return N.cols() > 0 && N.row(v).norm() > kMoves; });
       }));
 }
+
 class Walker {
  public:
   Walker(const KinematicTree& tree, double tolerance, double largest_misfit, int poses)
@@ -74,7 +53,7 @@ class Walker {
     for (const WalkedPose& p : walk_.poses) walk_.misfit = std::max(walk_.misfit, p.misfit);
     const MatrixXd N = closer_.At(from.q).C.null_space;
     walk_.stuck = N.cols() > 0 && walk_.poses.size() < 3;
-    walk_.mobile_clusters = CountMobile(LoopClusters(tree_), N);
+    walk_.mobile_clusters = CountMobile(SplitLoops(tree_), N);
     return walk_;
   }
 
@@ -157,9 +136,11 @@ Walk FindWalk(const KinematicTree& tree, const VectorXd& q, double largest_misfi
 }
 
 bool EveryLoopMoves(const KinematicTree& tree, const VectorXd& q) {
-  const std::vector<std::vector<int>> clusters = LoopClusters(tree);
-  const NullSpace free = FindNullSpace(DimensionlessLoopJacobian(tree, q), kRankTolerance);
-  return CountMobile(clusters, free.basis) == clusters.size();
+  const std::vector<LoopCluster> clusters = SplitLoops(tree);
+  return std::all_of(clusters.begin(), clusters.end(), [&](const LoopCluster& cluster) {
+    const MatrixXd C = DimensionlessLoopJacobian(cluster.tree, q(cluster.q));
+    return RowSpace(C, kRankTolerance).rank() < cluster.tree.nv;
+  });
 }
 
 }  // namespace vmech

@@ -134,12 +134,17 @@ class Crew {
     if (process == 0) {
       prctl(PR_SET_PDEATHSIG, SIGKILL);
       if (getppid() != parent) _exit(1);  // it ended meanwhile
-      close(ends[0]);
-      for (const Worker& worker : workers_) close(worker.socket);
+      KeepOnly(ends[1]);
       Serve(ends[1], work_);
     }
     close(ends[1]);
     workers_.push_back({process, ends[0], LineReader(ends[0]), {}, {}});
+  }
+
+  /// Closes what is open but standard files and a socket: locks must end with the parent.
+  static void KeepOnly(int socket) {
+    close_range(STDERR_FILENO + 1, socket - 1, 0);
+    close_range(socket + 1, ~0U, 0);
   }
 
   [[noreturn]] static void ThrowNoProcess() {

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "vmech/apps/csv_table.h"
+
 namespace vmech {
 namespace {
 
@@ -15,23 +17,15 @@ double NumberOf(const Json& value) {
   return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
 }
 
-std::string InQuotes(std::string_view text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"') quoted += '"';
-    quoted += c == '\n' ? ' ' : c;
-  }
-  return quoted + "\"";
-}
-
 std::string Row(const Suite& suite, const Result& r) {
   const TargetBlock& block = suite.blocks[r.problem.block];
   return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
-                     suite.mechanisms[r.problem.mechanism].name, block.name, NameOf(block.kind),
-                     block.is_path() ? "path" : NameOf(block.start), r.problem.index + 1,
-                     r.solver.name(), NameOf(r.verdict), r.targets, r.reached, r.jumps,
-                     r.iterations, r.evaluations, r.jacobian_evaluations, r.time, r.e1_position,
-                     r.e1_rotation, r.e2, r.kkt, NameOf(r.branch), r.distance, InQuotes(r.message));
+                     CsvCell(suite.mechanisms[r.problem.mechanism].name), CsvCell(block.name),
+                     NameOf(block.kind), block.is_path() ? "path" : NameOf(block.start),
+                     r.problem.index + 1, r.solver.name(), NameOf(r.verdict), r.targets, r.reached,
+                     r.jumps, r.iterations, r.evaluations, r.jacobian_evaluations, r.time,
+                     r.e1_position, r.e1_rotation, r.e2, r.kkt, NameOf(r.branch), r.distance,
+                     CsvCell(r.message));
 }
 
 }  // namespace

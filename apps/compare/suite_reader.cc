@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -18,6 +19,8 @@ namespace {
 
 constexpr int kMaxCount = 1'000'000;
 constexpr int kMaxSteps = 100'000;
+constexpr int64_t kMaxProblems = 1'000'000;     // of a suite; each is a row per solver
+constexpr int64_t kMaxTargets = 1'000'000'000;  // of its paths
 
 void CheckVersion(const Node& version) {
   const std::string text = version.Text(std::string(kSuiteFormat));
@@ -33,6 +36,14 @@ void ReadStopping(const Node& node, StoppingRule* rule) {
   rule->constraint_tolerance = node["constraint_tolerance"].Positive(rule->constraint_tolerance);
   rule->optimality_tolerance = node["optimality_tolerance"].Positive(rule->optimality_tolerance);
   rule->max_iterations = node["max_iterations"].Integer(rule->max_iterations, 1, 1'000'000);
+}
+
+/// A number within a range.
+double Within(const Node& node, double fallback, double least, double most) {
+  const double value = node.Number(fallback);
+  if (value >= least && value <= most) return value;
+  node.Error(fmt::format("must be from {:g} to {:g}, but is {:g}", least, most, value));
+  return fallback;
 }
 
 /// Keys that only some kinds of targets know.
@@ -72,11 +83,11 @@ TargetBlock ReadBlock(const Node& node) {
   block.start = node["start"].Word<StartKind>(
       {{"near", StartKind::kNear}, {"far", StartKind::kFar}}, StartKind::kNear);
   block.count = node["count"].Integer(1, 1, kMaxCount);
-  block.start_distance = node["start_distance"].Positive(block.start_distance);
-  block.offset = node["offset"].Positive(block.offset);
-  block.closeness = node["closeness"].Positive(block.closeness);
+  block.start_distance = Within(node["start_distance"], block.start_distance, 1e-9, 10);
+  block.offset = Within(node["offset"], block.offset, 1e-9, 100);
+  block.closeness = Within(node["closeness"], block.closeness, 1e-9, 1);
   block.steps = node["steps"].Integer(block.steps, 2, kMaxSteps);
-  block.step = node["step"].Positive(block.step);
+  block.step = Within(node["step"], block.step, 1e-6, 1);
   CheckKeysOfKind(node, block);
   return block;
 }
@@ -137,6 +148,7 @@ class SuiteReader {
       if (document_.ok() && suite_.mechanisms.empty()) {
         root["mechanisms"].Error("name at least one mechanism");
       }
+      if (document_.ok()) CheckSize(root["targets"]);
     }
     document_.ThrowErrors();
     return std::move(suite_);
@@ -149,13 +161,36 @@ class SuiteReader {
     suite_.seed =
         static_cast<uint64_t>(root["seed"].Integer(1, 0, std::numeric_limits<int>::max()));
     suite_.repetitions = root["repetitions"].Integer(suite_.repetitions, 1, 1000);
-    suite_.reach_tolerance = root["reach_tolerance"].Positive(suite_.reach_tolerance);
+    suite_.reach_tolerance = Within(root["reach_tolerance"], suite_.reach_tolerance, 1e-15, 1);
     ReadStopping(root["stopping"], &suite_.stopping);
     try {
       suite_.stopping.Validate();
     } catch (const std::invalid_argument& defect) {
       root["stopping"].Error(defect.what());
     }
+  }
+
+  /// Each count may be large, their sum may not.
+  void CheckSize(const Node& targets) const {
+    int64_t problems = 0, on_paths = 0;
+    for (const SuiteMechanism& mechanism : suite_.mechanisms) {
+      for (const int b : mechanism.blocks) {
+        const TargetBlock& block = suite_.blocks[b];
+        problems += block.count;
+        on_paths += block.is_path() ? int64_t{block.count} * block.steps : 0;
+      }
+    }
+    CheckSum(targets, "problems", "counts over all mechanisms", problems, kMaxProblems);
+    CheckSum(targets, "targets on paths", "counts times steps", on_paths, kMaxTargets);
+  }
+
+  static void CheckSum(const Node& targets, const char* what, const char* sum, int64_t value,
+                       int64_t most) {
+    if (value <= most) return;
+    targets.KeyError(
+        fmt::format("{} {} (the sum of the {}) are more than {}; lower them, or make "
+                    "several suites",
+                    value, what, sum, most));
   }
 
   void ReadOne(const Node& node, const Units& units) {

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "vmech/base/printable_text.h"
+
 namespace vmech::html {
 namespace {
 
@@ -18,10 +20,8 @@ std::string_view ReferenceFor(char c) {
     case '\'':
       return "&#39;";
     default:
-      break;
+      return {};
   }
-  const bool allowed = static_cast<unsigned char>(c) >= 0x20 || c == '\t' || c == '\n' || c == '\r';
-  return allowed ? std::string_view() : std::string_view("\uFFFD");
 }
 
 }  // namespace
@@ -29,7 +29,7 @@ std::string_view ReferenceFor(char c) {
 std::string EscapeText(std::string_view text) {
   std::string escaped;
   escaped.reserve(text.size() + 16);
-  for (const char c : text) {
+  for (const char c : PrintableText(text)) {
     const std::string_view reference = ReferenceFor(c);
     if (reference.empty()) {
       escaped += c;

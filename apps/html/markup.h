@@ -5,8 +5,8 @@
 
 namespace vmech::html {
 
-/// The text with & < > " ' replaced by character references. Control characters that XML does not
-/// allow become U+FFFD, so that a hostile name can break neither HTML nor XML.
+/// PrintableText with & < > " ' replaced by character references, so that a hostile name can break
+/// neither HTML nor XML.
 std::string EscapeText(std::string_view text);
 
 /// A piece of well-formed HTML. Plain text becomes Markup only by being escaped (implicitly);

@@ -10,6 +10,7 @@
 
 #include "vmech/apps/commands.h"
 #include "vmech/apps/import/import_command.h"
+#include "vmech/apps/printable_streams.h"
 #include "vmech/mechanisms/cad/frame_name.h"
 #include "vmech/mechanisms/document.h"
 
@@ -141,6 +142,7 @@ int Run(int argc, char** argv) {
 }  // namespace vmech
 
 int main(int argc, char** argv) {
+  vmech::PrintOnlyPrintableText();
   try {
     return vmech::Run(argc, argv);
   } catch (const vmech::FileErrors& error) {

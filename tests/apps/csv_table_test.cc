@@ -54,5 +54,32 @@ TEST(CsvTable, StopsWhenThereIsTooMuchToReport) {
   }
 }
 
+TEST(CsvCell, IsQuotedWhereItMustBe) {
+  EXPECT_EQ(CsvCell("crank"), "crank");
+  EXPECT_EQ(CsvCell("a, b"), "\"a, b\"");
+  EXPECT_EQ(CsvCell("a \"b\""), "\"a \"\"b\"\"\"");
+  EXPECT_EQ(CsvCell("one\ntwo"), "one two");
+  EXPECT_EQ(CsvCell(""), "");
+}
+
+TEST(CsvCell, IsNoFormula) {
+  EXPECT_EQ(CsvCell("=1+1"), "'=1+1");
+  EXPECT_EQ(CsvCell("@SUM(A1)"), "'@SUM(A1)");
+  EXPECT_EQ(CsvCell("+cmd|' /C calc'!A0"), "'+cmd|' /C calc'!A0");
+  EXPECT_EQ(CsvCell("-pin.fx"), "'-pin.fx");
+  EXPECT_EQ(CsvCell("=HYPERLINK(\"http://x\",1)"), "\"'=HYPERLINK(\"\"http://x\"\",1)\"");
+  EXPECT_EQ(CsvCell("\t=1"), "' =1");
+  EXPECT_EQ(CsvCell("\r=1"), "'\uFFFD=1");
+}
+
+TEST(CsvCell, LeavesNumbersNumbers) {
+  EXPECT_EQ(CsvCell("-1.5e-3"), "-1.5e-3");
+  EXPECT_EQ(CsvCell("+2"), "+2");
+}
+
+TEST(CsvCell, ShowsNoControlCharacters) {
+  EXPECT_EQ(CsvCell("a\x1b[31m"), "a\uFFFD[31m");
+}
+
 }  // namespace
 }  // namespace vmech
