@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "vmech/apps/commands.h"
+#include "vmech/apps/inputs_apart.h"
 #include "vmech/apps/output_folder.h"
 #include "vmech/kinematics/assembled_mechanism.h"
 #include "vmech/mechanisms/denavit_hartenberg.h"
@@ -31,6 +32,7 @@ ExportedText Exported(const Mechanism& mechanism, const ExportArguments& argumen
 }  // namespace
 
 int RunExport(const ExportArguments& arguments) {
+  RequireOutputsApart({arguments.mechanism}, {arguments.out});
   Mechanism mechanism = ReadMechanism(arguments.mechanism);
   if (arguments.tolerance) mechanism.tolerance = *arguments.tolerance;
   if (arguments.dh_frames) {
