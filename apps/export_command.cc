@@ -2,6 +2,7 @@
 
 #include "vmech/apps/commands.h"
 #include "vmech/apps/file_kind.h"
+#include "vmech/apps/inputs_apart.h"
 #include "vmech/apps/option_error.h"
 #include "vmech/apps/output_folder.h"
 #include "vmech/kinematics/assembled_mechanism.h"
@@ -34,6 +35,7 @@ ExportedText Exported(const Mechanism& mechanism, const ExportArguments& argumen
 }  // namespace
 
 int RunExport(const ExportArguments& arguments) {
+  RequireOutputsApart({arguments.mechanism}, {arguments.out});
   Mechanism mechanism =
       ReadAs({"export", {FileKind::kMechanism}}, arguments.mechanism, ReadMechanism);
   if (arguments.tolerance) mechanism.tolerance = *arguments.tolerance;

@@ -81,6 +81,13 @@ std::string YamlWord(std::string_view text) {
   return quoted + '"';
 }
 
+std::string YamlNumber(double value) {
+  std::string text = fmt::format("{}", value);
+  const size_t exponent = text.find('e');
+  if (exponent != text.npos && text.find('.') == text.npos) text.insert(exponent, ".0");
+  return text;
+}
+
 std::string AlignedLines(const std::vector<std::pair<std::string, FlowMap>>& maps, int indent) {
   size_t width = 0;
   for (const auto& entry : maps) {

@@ -25,6 +25,10 @@ class FlowMap {
 /// something else.
 std::string YamlWord(std::string_view text);
 
+/// The shortest decimal that reads back as the same number, in a form that every reader of YAML
+/// takes for one: those of YAML 1.1 take "1e-06" for a text, "1.0e-06" is a number to all.
+std::string YamlNumber(double value);
+
 /// Named maps below each other, the maps aligned.
 std::string AlignedLines(const std::vector<std::pair<std::string, FlowMap>>& maps, int indent);
 

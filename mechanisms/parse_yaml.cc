@@ -8,6 +8,7 @@
 
 #include <sstream>
 
+#include "vmech/mechanisms/characters.h"
 #include "vmech/mechanisms/explain_yaml.h"
 
 namespace vmech {
@@ -15,45 +16,6 @@ namespace {
 
 using Item = Document::Item;
 using Kind = Node::Kind;
-
-/// Length of the UTF-8 sequence at the head of the text; 0 if it is not one (RFC 3629).
-int Utf8Length(std::string_view text) {
-  const auto byte = [&](size_t i) {
-    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
-  };
-  const auto continues = [&](size_t i) { return (byte(i) & 0xC0) == 0x80; };
-  const unsigned head = byte(0);
-  if (head < 0x80) return 1;
-  if (head >= 0xC2 && head < 0xE0) return continues(1) ? 2 : 0;
-  if (head >= 0xE0 && head < 0xF0) {
-    const bool overlong = head == 0xE0 && byte(1) < 0xA0;
-    const bool surrogate = head == 0xED && byte(1) >= 0xA0;
-    return !overlong && !surrogate && continues(1) && continues(2) ? 3 : 0;
-  }
-  if (head >= 0xF0 && head < 0xF5) {
-    const bool overlong = head == 0xF0 && byte(1) < 0x90;
-    const bool beyond = head == 0xF4 && byte(1) >= 0x90;
-    return !overlong && !beyond && continues(1) && continues(2) && continues(3) ? 4 : 0;
-  }
-  return 0;
-}
-
-/// yaml-cpp takes control characters for its own marks and does not check its input: do it here.
-void CheckCharacters(std::string_view text, const std::string& name) {
-  int line = 1, column = 1;
-  for (size_t i = 0; i < text.size();) {
-    const auto c = static_cast<unsigned char>(text[i]);
-    const int length = Utf8Length(text.substr(i));
-    const bool control = (c < 0x20 && c != '\n' && c != '\r' && c != '\t') || c == 0x7F;
-    if (length == 0 || control) {
-      const char* what = control ? "control character" : "byte that is not UTF-8 text,";
-      throw FileErrors({{name, line, column, "", fmt::format("{} 0x{:02X}", what, c)}});
-    }
-    i += length;
-    ++column;
-    if (c == '\n') ++line, column = 1;
-  }
-}
 
 /// Builds the items from yaml-cpp's events. Unlike its node tree, the events keep the place of
 /// every value, the order of keys and the difference between 1.0 and "1.0".
@@ -171,7 +133,7 @@ std::vector<Item> ParseYaml(std::string_view text, const std::string& name) {
   if (text.size() > kMaxFileBytes) {
     throw FileErrors(name, fmt::format("larger than {} MB", kMaxFileBytes >> 20));
   }
-  CheckCharacters(text, name);
+  RequireCharacters(text, name);
   std::istringstream stream{std::string(text)};
   ItemBuilder builder(name);
   try {

@@ -40,13 +40,13 @@ std::string Decimal(double si, double guess, const std::function<double(double)>
   }
   for (int digits = 1; digits <= 17; ++digits) {
     const double rounded = *ParseNumber(fmt::format("{:.{}g}", guess, digits));
-    if (to_si(rounded) == si) return fmt::format("{}", rounded);
+    if (to_si(rounded) == si) return YamlNumber(rounded);
   }
   for (const double side : {-1e300, 1e300}) {
     const double beside = std::nextafter(guess, side);
-    if (to_si(beside) == si) return fmt::format("{}", beside);
+    if (to_si(beside) == si) return YamlNumber(beside);
   }
-  return fmt::format("{}", guess);
+  return YamlNumber(guess);
 }
 
 std::string Decimal(double si, double unit) {

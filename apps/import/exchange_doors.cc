@@ -4,6 +4,7 @@
 
 #include "vmech/apps/import/doors.h"
 #include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/exchange/proposed_grasps.h"
 #include "vmech/mechanisms/exchange/sdf.h"
 #include "vmech/mechanisms/exchange/urdf.h"
 #include "vmech/mechanisms/mass_properties.h"
@@ -56,18 +57,48 @@ std::string ImportReport(const std::filesystem::path& file, const ImportedMechan
 }
 
 ImportOptions OptionsOf(const ImportArguments& arguments) {
-  if (!arguments.study.empty() || !arguments.meshes.empty()) {
-    throw FileErrors(arguments.file.string(),
-                     "holds no shapes: --study and --meshes are for STEP files");
+  return {arguments.cad.ground, arguments.cad.gravity_W, arguments.model, arguments.strict};
+}
+
+void AddGrasps(const ImportArguments& arguments, Mechanism* mechanism) {
+  std::vector<std::string> names;
+  for (const Link& link : mechanism->links) names.push_back(link.name);
+  for (const std::string& name : arguments.grasps) {
+    const int link = FindLink(*mechanism, name);
+    if (link < 0) {
+      throw FileErrors(arguments.file.string(),
+                       fmt::format("there is no link {} for a grasp (--grasp){}", Quoted(name),
+                                   DidYouMean(name, names)));
+    }
+    AddGraspAt(link, mechanism);
   }
-  return {arguments.cad.ground, arguments.cad.gravity_W};
+}
+
+/// At the frames that are at the ends of chains, if neither the file nor the user names any.
+void ProposeGrasps(const ImportArguments& arguments, ImportedMechanism* imported) {
+  if (!arguments.grasps.empty() || !imported->mechanism.grasps.empty()) return;
+  std::vector<std::string> names;
+  for (const int link : LeafLinks(imported->mechanism)) {
+    AddGraspAt(link, &imported->mechanism);
+    names.push_back(imported->mechanism.links[link].name);
+  }
+  if (names.empty()) return;
+  imported->notes.push_back(
+      fmt::format("proposed grasps, at the ends of chains: {} (--grasp names "
+                  "others)",
+                  fmt::join(names, ", ")));
+}
+
+ImportedFile Finished(const ImportArguments& arguments, ImportedMechanism imported) {
+  ProposeGrasps(arguments, &imported);
+  AddGrasps(arguments, &imported.mechanism);
+  return {imported.mechanism, ImportReport(arguments.file, imported), {}, {}, {}};
 }
 
 }  // namespace
 
 ImportedFile ImportSdf(const ImportArguments& arguments) {
-  const ImportedMechanism imported = ReadSdf(arguments.file, OptionsOf(arguments));
-  return {imported.mechanism, ImportReport(arguments.file, imported), {}, {}, {}};
+  return Finished(arguments, ReadSdf(arguments.file, OptionsOf(arguments)));
 }
 
 ImportedFile ImportUrdf(const ImportArguments& arguments) {
@@ -79,7 +110,7 @@ ImportedFile ImportUrdf(const ImportArguments& arguments) {
                                          imported.mechanism.joints.size() - joints,
                                          arguments.loops.string()));
   }
-  return {imported.mechanism, ImportReport(arguments.file, imported), {}, {}, {}};
+  return Finished(arguments, std::move(imported));
 }
 
 }  // namespace vmech

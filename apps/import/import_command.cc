@@ -7,8 +7,10 @@
 
 #include "vmech/apps/check.h"
 #include "vmech/apps/commands.h"
+#include "vmech/apps/inputs_apart.h"
 #include "vmech/apps/output_folder.h"
 #include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/flow_map.h"
 #include "vmech/mechanisms/reader.h"
 #include "vmech/mechanisms/writer.h"
 
@@ -53,8 +55,8 @@ std::string MechanismText(const ImportedFile& imported, const ImportArguments& a
 std::string StudyFileText(const ImportedFile& imported, const ImportArguments& arguments) {
   const fs::path there = fs::absolute(arguments.out).lexically_normal();
   const fs::path here = fs::absolute(FolderOf(arguments.study)).lexically_normal();
-  return fmt::format("vmech_study: \"1.0\"\nmechanism: \"{}\"\n{}",
-                     there.lexically_relative(here).string(), imported.study);
+  return fmt::format("vmech_study: \"1.0\"\nmechanism: {}\n{}",
+                     YamlWord(there.lexically_relative(here).string()), imported.study);
 }
 
 void Print(const ImportedFile& imported, const MechanismCheck& check, const Outputs& outputs) {
@@ -72,6 +74,29 @@ void Print(const ImportedFile& imported, const MechanismCheck& check, const Outp
   fmt::print("written to {}\n", outputs.names());
 }
 
+/// An option that does nothing for this kind of file is a slip.
+void RequireOptionsFit(const ImportArguments& arguments) {
+  const std::string ending = EndingOf(arguments.file);
+  const bool sdf = ending == ".sdf" || ending == ".world", urdf = ending == ".urdf";
+  const auto refuse = [&](bool given, bool fits, const char* message) {
+    if (given && !fits) throw FileErrors(arguments.file.string(), message);
+  };
+  refuse(!arguments.model.empty(), sdf, "--model is for SDFormat, of which a file holds several");
+  refuse(!arguments.loops.empty(), urdf, "--loops is for URDF, which has no loops of its own");
+  refuse(!arguments.grasps.empty(), sdf || urdf,
+         "--grasp is for SDFormat and URDF; in CAD a coordinate system grasp_NAME makes a grasp");
+  refuse(arguments.strict, sdf || urdf,
+         "--strict is for SDFormat and URDF, whose inertias are written, not computed");
+}
+
+/// What is read and what is written, one file each.
+void RequireFilesApart(const ImportArguments& arguments) {
+  std::vector<fs::path> inputs{arguments.file}, outputs{arguments.out};
+  if (!arguments.loops.empty()) inputs.push_back(arguments.loops);
+  if (!arguments.study.empty()) outputs.push_back(arguments.study);
+  RequireOutputsApart(inputs, outputs);
+}
+
 }  // namespace
 
 int RunImport(ImportArguments arguments) {
@@ -81,7 +106,10 @@ int RunImport(ImportArguments arguments) {
   if (ending != ".yaml" && ending != ".yml") {
     throw FileErrors(arguments.out.string(), "a mechanism is written as .yaml");
   }
-  const ImportedFile imported = DoorFor(arguments.file).read(arguments);
+  const ImportDoor& door = DoorFor(arguments.file);
+  RequireOptionsFit(arguments);
+  RequireFilesApart(arguments);
+  const ImportedFile imported = door.read(arguments);
   const std::string text = MechanismText(imported, arguments);
   const MechanismCheck check = CheckMechanism(ParseMechanism(text, arguments.out.string()));
 

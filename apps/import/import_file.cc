@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "vmech/apps/import/doors.h"
+#include "vmech/apps/import/other_formats.h"
 #include "vmech/mechanisms/document.h"
 
 namespace vmech {
@@ -41,6 +42,8 @@ const ImportDoor& DoorFor(const std::filesystem::path& file) {
       known += fmt::format("{}{}", known.empty() ? "" : ", ", each);
     }
   }
+  const std::string way = WayRound(file);
+  if (!way.empty()) throw FileErrors(file.string(), fmt::format("{}; read are: {}", way, known));
   throw FileErrors(file.string(),
                    fmt::format("files are known by the ending of their name, and "
                                "{} is none of: {}",

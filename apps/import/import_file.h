@@ -27,6 +27,9 @@ struct ImportArguments {
   double rpm = 60;  ///< of these, -1e6..1e6, not 0
   bool si = false;  ///< write metres and radians
   bool quiet = false;
+  std::string model;                ///< SDF: one of several, by name; empty: the only one
+  std::vector<std::string> grasps;  ///< links at whose frames there is a grasp; empty: proposed
+  bool strict = false;              ///< SDF, URDF: refuse what would be mended with a note
 
   /// @throws std::invalid_argument
   void Validate() const;

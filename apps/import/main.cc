@@ -75,6 +75,20 @@ void AddCadOptions(CLI::App* app, ImportArguments* options, Raw* raw) {
                 "read files with faulty entities, too");
 }
 
+void AddExchangeOptions(CLI::App* app, ImportArguments* arguments) {
+  app->add_option("--loops", arguments->loops, "URDF: side file with its loops")->type_name("FILE");
+  app->add_option("--model", arguments->model, "SDFormat: one of several models")
+      ->type_name("NAME");
+  app->add_option("--grasp", arguments->grasps,
+                  "SDFormat, URDF: a link at whose frame a hand holds on (default: the frames of "
+                  "the file, else the ends of chains); may be given several times")
+      ->allow_extra_args(false)
+      ->type_name("LINK");
+  app->add_flag("--strict", arguments->strict,
+                "SDFormat, URDF: refuse what would be mended with a note, as an inertia that no "
+                "body has");
+}
+
 void AddOutputs(CLI::App* app, ImportArguments* arguments) {
   app->add_option("--out", arguments->out, "mechanism file (default: <file>.yaml in this folder)")
       ->type_name("FILE");
@@ -127,7 +141,7 @@ int Run(int argc, char** argv) {
   app.add_option("--gravity", raw.gravity,
                  "in world axes [m/s^2] (default: that of the file, else 0 0 -9.81)")
       ->type_name("\"X Y Z\"");
-  app.add_option("--loops", arguments.loops, "URDF: side file with its loops")->type_name("FILE");
+  AddExchangeOptions(&app, &arguments);
   AddCadOptions(&app, &arguments, &raw);
   try {
     app.parse(argc, argv);

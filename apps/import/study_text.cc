@@ -8,13 +8,14 @@
 #include <stdexcept>
 
 #include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/flow_map.h"
 
 namespace vmech {
 namespace {
 
 /// Millimetres to a nanometre: 20 mm as drawn are 20 in the file.
 std::string Millimetres(double metres) {
-  return fmt::format("{}", std::round(1e9 * metres) / 1e6 + 0.0);
+  return YamlNumber(std::round(1e9 * metres) / 1e6 + 0.0);
 }
 
 std::string FirstThatTurns(const Mechanism& mechanism) {
@@ -50,8 +51,8 @@ std::string MotionText(const Mechanism& mechanism, std::vector<std::string> driv
                                               Quoted(drives[i]),
                                               NameOf(mechanism.joints[joint].type)));
     }
-    text += fmt::format("{}{{joint: \"{}\", rpm: {:g}{}}}\n", drives.size() == 1 ? "" : "  - ",
-                        drives[i], rpm, i == 0 ? ", turns: 1, steps: 360" : "");
+    text += fmt::format("{}{{joint: \"{}\", rpm: {}{}}}\n", drives.size() == 1 ? "" : "  - ",
+                        drives[i], YamlNumber(rpm), i == 0 ? ", turns: 1, steps: 360" : "");
   }
   return text;
 }

@@ -21,6 +21,11 @@ struct ImportOptions {
   std::string ground;
   /// In world axes [m/s^2]. None: that of the file, or else 9.81 m/s^2 along -z.
   std::optional<Vector3d> gravity_W;
+  /// SDF: the model of a file of several, by name. Empty: the only one that moves.
+  std::string model;
+  /// Refuse what would else be mended with a note: inertias that no body has, a range that holds
+  /// its joint, a joint that floats.
+  bool strict = false;
 };
 
 /// A mechanism in the language of another program.

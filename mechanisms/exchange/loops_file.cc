@@ -38,7 +38,7 @@ void AddAnchors(const Node& entry, const Units& units, Mechanism* mechanism) {
 void AddLoops(const std::filesystem::path& path, Mechanism* mechanism) {
   Document document(ReadTextFile(path), path.string());
   const Node root = document.root();
-  if (root.CheckKeys({"vmech_loops", "links", "loops"}, {"units", "description"})) {
+  if (root.CheckKeys({"vmech_loops", "loops"}, {"links", "units", "description"})) {
     if (root["vmech_loops"].Text() != kLoopsFormat) {
       root["vmech_loops"].Error(fmt::format("only format \"{}\" can be read", kLoopsFormat));
     }

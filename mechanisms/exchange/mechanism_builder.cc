@@ -2,9 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
-#include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/exchange/mended_inertia.h"
 #include "vmech/mechanisms/reader.h"
 #include "vmech/mechanisms/writer.h"
 
@@ -25,21 +26,6 @@ std::string WithoutForbidden(std::string_view name) {
   return fit.empty() ? "unnamed" : fit;
 }
 
-/// Reads the mechanism back as from a file of its own.
-void RequireReadable(const Mechanism& mechanism, const std::string& file) {
-  std::vector<FileError> errors;
-  try {
-    ParseMechanism(WriteMechanism(mechanism), file);
-    return;
-  } catch (const FileErrors& found) {
-    errors = found.errors();
-  } catch (const std::invalid_argument& found) {
-    throw FileErrors(file, found.what());
-  }
-  for (FileError& error : errors) error.line = 0;  // of a text that nobody has seen
-  throw FileErrors(errors);
-}
-
 }  // namespace
 
 Matrix3d AxesAlong(const Vector3d& z, const Matrix3d& near) {
@@ -48,7 +34,8 @@ Matrix3d AxesAlong(const Vector3d& z, const Matrix3d& near) {
   return AxesFromZX(z, cosine < kAlong ? near.col(0) : near.col(1));
 }
 
-MechanismBuilder::MechanismBuilder(std::string name) {
+MechanismBuilder::MechanismBuilder(std::string name, ImportOptions options)
+    : options_(std::move(options)) {
   imported_.mechanism.name = std::move(name);
 }
 
@@ -63,9 +50,10 @@ std::string MechanismBuilder::FitName(std::string_view name, std::set<std::strin
 }
 
 int MechanismBuilder::AddLink(std::string_view name, const MassProperties& properties,
-                              const Posed& X_WL) {
+                              const Posed& X_WL, const Place& place) {
   imported_.mechanism.links.push_back({FitName(name, &links_), properties, {}});
   poses_.push_back(X_WL);
+  places_.push_back(place);
   return static_cast<int>(poses_.size()) - 1;
 }
 
@@ -92,35 +80,115 @@ void MechanismBuilder::AddGrasp(std::string_view name, int link, const Posed& X_
   imported_.mechanism.grasps.push_back({FitName(name, &grasps_), link, X_LG, GraspKind::kRigid});
 }
 
-int MechanismBuilder::ChooseGround(const ImportOptions& options, std::optional<int> fixed,
-                                   const std::string& file) {
+void MechanismBuilder::NoteMended(const Place& place, const std::string& what) {
+  if (options_.strict) {
+    refusals_.push_back({place.file, place.line, 1, "", what + "; refused by --strict"});
+  } else {
+    Note(fmt::format("{} ({}:{})", what, place.file, place.line));
+  }
+}
+
+void MechanismBuilder::SetLimits(const Place& place, double lower, double upper, size_t freedom,
+                                 Joint* joint) {
+  const std::string what = fmt::format("joint '{}'", joint->name);
+  if (lower == upper) {
+    return NoteMended(place, fmt::format("{}: its limits are both {:.6g} and would hold it: left "
+                                         "out",
+                                         what, lower));
+  }
+  if (!(lower < upper)) {
+    throw FileErrors({{place.file, place.line, 1, "",
+                       fmt::format("{}: the lower limit {:.6g} is above the upper one {:.6g}", what,
+                                   lower, upper)}});
+  }
+  joint->lower[freedom] = lower;
+  joint->upper[freedom] = upper;
+  const double start = std::clamp(0.0, lower, upper);
+  if (start == 0) return;
+  Note(
+      fmt::format("{} may move from {:.6g} to {:.6g}, which leaves out zero, where it is drawn: it "
+                  "starts at {:.6g}",
+                  what, lower, upper, start));
+  joint->start[freedom] = start;
+  joint->start_given = true;
+}
+
+int MechanismBuilder::ChooseGround(std::optional<int> fixed, const std::string& file) {
   const Mechanism& mechanism = imported_.mechanism;
   if (mechanism.links.empty()) throw FileErrors(file, "there is no link in it");
-  if (!options.ground.empty()) {
-    const int link = FindLink(mechanism, options.ground);
+  if (!options_.ground.empty()) {
+    const int link = FindLink(mechanism, options_.ground);
     if (link >= 0) return link;
     std::vector<std::string> names;
     for (const Link& each : mechanism.links) names.push_back(each.name);
-    throw FileErrors(file, fmt::format("the ground {} is not a link of it{}",
-                                       Quoted(options.ground), DidYouMean(options.ground, names)));
+    throw FileErrors(file,
+                     fmt::format("the ground {} is not a link of it{}", Quoted(options_.ground),
+                                 DidYouMean(options_.ground, names)));
   }
   if (!fixed) {
-    Note(
-        fmt::format("nothing is fixed to the world: taken for the ground is '{}' (--ground names "
-                    "another)",
-                    mechanism.links[0].name));
+    Note(fmt::format(
+        "nothing is fixed to the world: taken for the ground is '{}' (--ground names another)",
+        mechanism.links[0].name));
   }
   return fixed.value_or(0);
 }
 
-ImportedMechanism MechanismBuilder::Finish(const ImportOptions& options,
-                                           std::optional<int> fixed_to_world,
+/// What the ground weighs does not matter, and is no reason to refuse a file.
+void MechanismBuilder::MendInertias() {
+  Mechanism& mechanism = imported_.mechanism;
+  for (size_t i = 0; i < mechanism.links.size(); ++i) {
+    Link& link = mechanism.links[i];
+    const std::string mended = MendInertia(&link.mass_properties);
+    if (mended.empty()) continue;
+    if (static_cast<int>(i) == mechanism.ground) {
+      link.mass_properties.I_Lcm = Matrix3d::Zero();
+      Note(fmt::format("link '{}' is the ground: its inertia is dropped ({}:{})", link.name,
+                       places_[i].file, places_[i].line));
+    } else {
+      NoteMended(places_[i], fmt::format("link '{}': {}", link.name, mended));
+    }
+  }
+  if (!refusals_.empty()) throw FileErrors(refusals_);
+}
+
+/// The place of the link that a path, "links.crank.mass", leads to.
+Place MechanismBuilder::PlaceOf(const std::string& path) const {
+  for (size_t i = 0; i < places_.size(); ++i) {
+    const std::string head = "links." + imported_.mechanism.links[i].name;
+    if (path == head || path.starts_with(head + ".")) return places_[i];
+  }
+  return {};
+}
+
+/// Reads the mechanism back as from a file of its own. The lines are of a text that nobody has
+/// seen; those of the links are told instead.
+void MechanismBuilder::RequireReadable(const std::string& file) const {
+  std::vector<FileError> errors;
+  try {
+    ParseMechanism(WriteMechanism(imported_.mechanism), file);
+    return;
+  } catch (const FileErrors& found) {
+    errors = found.errors();
+  } catch (const std::invalid_argument& found) {
+    throw FileErrors(file, found.what());
+  }
+  for (FileError& error : errors) {
+    const Place place = PlaceOf(error.path);
+    error.line = place.line;
+    error.column = 1;
+    if (place.line > 0) error.file = place.file;
+  }
+  throw FileErrors(errors);
+}
+
+ImportedMechanism MechanismBuilder::Finish(std::optional<int> fixed_to_world,
                                            const Vector3d& gravity_W, const std::string& file) {
   Mechanism& mechanism = imported_.mechanism;
-  mechanism.ground = ChooseGround(options, fixed_to_world, file);
+  mechanism.ground = ChooseGround(fixed_to_world, file);
   mechanism.gravity_W =
-      poses_[mechanism.ground].R.transpose() * options.gravity_W.value_or(gravity_W);
-  RequireReadable(mechanism, file);
+      poses_[mechanism.ground].R.transpose() * options_.gravity_W.value_or(gravity_W);
+  MendInertias();
+  RequireReadable(file);
   return std::move(imported_);
 }
 

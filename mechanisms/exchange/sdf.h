@@ -21,10 +21,13 @@ namespace vmech {
 ///   spring_stiffness/_reference
 ///   frame                        grasp
 
-/// Reads the model of a file, through libsdformat. Nested models and includes without a network are
-/// followed. Visuals, collisions, sensors and plug-ins are left out.
+/// Reads a model of a file, through libsdformat: the one that is asked for, or the only one that
+/// moves. A world with joints between its models is one mechanism, and its static models are the
+/// ground. Nested models are followed, and includes without a network (sdf_document.h). Inertias
+/// that no body has are mended (mended_inertia.h). Visuals, collisions, sensors and plug-ins are
+/// left out.
 /// @throws FileErrors if the file cannot be read or cannot become a mechanism (gearbox, revolute2),
-///         or if vmech was built without libsdformat.
+///         if a number is not finite, or if vmech was built without libsdformat.
 ImportedMechanism ReadSdf(const std::filesystem::path& path, const ImportOptions& options = {});
 
 /// False if vmech was built without libsdformat.

@@ -16,6 +16,8 @@
 #include "vmech/mechanisms/document.h"
 #include "vmech/mechanisms/exchange/mechanism_builder.h"
 #include "vmech/mechanisms/exchange/sdf.h"
+#include "vmech/mechanisms/exchange/sdf_copies.h"
+#include "vmech/mechanisms/exchange/sdf_document.h"
 #include "vmech/mechanisms/exchange/xml_text.h"
 
 namespace vmech {
@@ -33,12 +35,11 @@ Posed FromSdf(const ignition::math::Pose3d& X) {
 
 class Reader {
  public:
-  Reader(std::string file, const sdf::Model& model, MechanismBuilder* builder)
-      : file_(std::move(file)), builder_(*builder) {
-    AddLinks(model, "", Resolved(model.SemanticPose(), ""));
+  Reader(const SdfCopies& copies, const sdf::Model& model, MechanismBuilder* builder)
+      : copies_(copies), file_(copies.OriginalOf("").string()), builder_(*builder) {
+    AddLinks(model, "", Resolved(model.SemanticPose(), ""), false);
     AddJoints(model, "");
     AddFrames(model, "");
-    if (left_out_ > 0) builder_.Note("visuals, collisions and sensors are left out");
   }
 
   /// The link that a fixed joint holds to the world, or a link for the world itself.
@@ -57,33 +58,63 @@ class Reader {
     return FromSdf(X);
   }
 
-  void AddLinks(const sdf::Model& model, const std::string& prefix, const Posed& X_WM) {
+  /// Of a model and those nested in it; those that are static are part of the ground.
+  void AddLinks(const sdf::Model& model, const std::string& prefix, const Posed& X_WM,
+                bool is_ground) {
+    if (is_ground)
+      builder_.Note(fmt::format("model '{}' is static: part of the ground", model.Name()));
     for (uint64_t i = 0; i < model.LinkCount(); ++i) {
       const sdf::Link& link = *model.LinkByIndex(i);
-      const Posed X_WL = X_WM * Resolved(link.SemanticPose(), "__model__");
-      poses_[prefix + link.Name()] = X_WL;
-      links_[prefix + link.Name()] = builder_.AddLink(prefix + link.Name(), Inertial(link), X_WL);
-      left_out_ += link.VisualCount() + link.CollisionCount() + link.SensorCount();
+      const std::string name = prefix + link.Name();
+      poses_[name] = X_WM * Resolved(link.SemanticPose(), "__model__");
+      links_[name] =
+          is_ground ? World()
+                    : builder_.AddLink(name, Inertial(link, name), poses_[name], PlaceOf(link));
     }
     for (uint64_t i = 0; i < model.ModelCount(); ++i) {
       const sdf::Model& nested = *model.ModelByIndex(i);
       AddLinks(nested,
-               prefix + nested.Name() + "::", X_WM * Resolved(nested.SemanticPose(), "__model__"));
+               prefix + nested.Name() + "::", X_WM * Resolved(nested.SemanticPose(), "__model__"),
+               is_ground || nested.Static());
     }
   }
 
-  MassProperties Inertial(const sdf::Link& link) {
-    if (link.Element() != nullptr && !link.Element()->HasElement("inertial")) {
-      builder_.Note(fmt::format("link '{}' has no inertial: 1 kg and 1 kg m^2 by SDF's default",
-                                link.Name()));
-    }
+  /// Of the inertial, or of the link if it has none.
+  Place PlaceOf(const sdf::Link& link) const {
+    const sdf::ElementPtr element = link.Element()->HasElement("inertial")
+                                        ? link.Element()->GetElement("inertial")
+                                        : link.Element();
+    return {copies_.OriginalOf(element->FilePath()).string(), element->LineNumber().value_or(0)};
+  }
+
+  void NoteDefaults(const sdf::Link& link, const std::string& name) {
+    const sdf::ElementPtr element = link.Element();
+    const sdf::ElementPtr inertial =
+        element->HasElement("inertial") ? element->GetElement("inertial") : nullptr;
+    const bool mass = inertial != nullptr && inertial->HasElement("mass");
+    const bool inertia = inertial != nullptr && inertial->HasElement("inertia");
+    if (mass && inertia) return;
+    const Place place = PlaceOf(link);
+    builder_.Note(fmt::format("link '{}' has no {}: {} by SDF's default ({}:{})", name,
+                              inertial == nullptr ? "inertial"
+                              : mass              ? "inertia"
+                                                  : "mass",
+                              mass      ? "1 kg m^2"
+                              : inertia ? "1 kg"
+                                        : "1 kg and 1 kg m^2",
+                              place.file, place.line));
+  }
+
+  MassProperties Inertial(const sdf::Link& link, const std::string& name) {
+    NoteDefaults(link, name);
     const ignition::math::Inertiald& inertial = link.Inertial();
-    if (inertial.MassMatrix().Mass() <= kNextToNoMass) return {};
+    const double mass = inertial.MassMatrix().Mass();
     const ignition::math::Matrix3d I = inertial.Moi();  // about the centre of mass, axes of L
     Matrix3d I_Lcm;
     I_Lcm << I(0, 0), I(0, 1), I(0, 2), I(1, 0), I(1, 1), I(1, 2), I(2, 0), I(2, 1), I(2, 2);
-    return {inertial.MassMatrix().Mass(), FromSdf(inertial.Pose().Pos()),
-            0.5 * (I_Lcm + I_Lcm.transpose())};
+    const bool next_to_none = mass > 0 && mass <= kNextToNoMass;  // as WriteSdf has it
+    if (next_to_none) return {};
+    return {mass, FromSdf(inertial.Pose().Pos()), 0.5 * (I_Lcm + I_Lcm.transpose())};
   }
 
   void AddJoints(const sdf::Model& model, const std::string& prefix) {
@@ -102,11 +133,11 @@ class Reader {
   }
 
   int LinkIndex(const std::string& name, const std::string& prefix) {
-    if (name != "world") return links_.at(prefix + name);
-    if (!ground_) {
-      ground_ = builder_.AddLink("world", {}, {});
-      poses_["world"] = Posed();
-    }
+    return name == "world" ? World() : links_.at(prefix + name);
+  }
+
+  int World() {
+    if (!ground_) ground_ = builder_.AddLink("world", {}, {});
     return *ground_;
   }
 
@@ -128,11 +159,13 @@ class Reader {
     if (type == JointType::kScrew) added.pitch = -1 / ThreadPitch(joint);
     for (size_t i = 0; i < added.passive.size() && joint.Axis(static_cast<unsigned>(i)); ++i) {
       AddDynamics(*joint.Axis(static_cast<unsigned>(i)), i, &added);
+      AddLimits(joint, i, &added);
     }
   }
 
   double ThreadPitch(const sdf::Joint& joint) const {
-    if (joint.ThreadPitch() != 0 && std::isfinite(joint.ThreadPitch())) return joint.ThreadPitch();
+    const bool given = joint.Element()->HasElement("thread_pitch");
+    if (given && joint.ThreadPitch() != 0) return joint.ThreadPitch();
     Fail(fmt::format("joint '{}': a screw needs a thread_pitch that is not zero", joint.Name()));
   }
 
@@ -181,13 +214,21 @@ class Reader {
     return AxesFromZX(x.cross(y), x);
   }
 
-  void AddDynamics(const sdf::JointAxis& axis, size_t i, Joint* joint) const {
-    constexpr double kUnlimited = 1e15;  // SDF's default limits are 1e16 or infinite
-    if (axis.Lower() > -kUnlimited) joint->lower[i] = axis.Lower();
-    if (axis.Upper() < kUnlimited) joint->upper[i] = axis.Upper();
+  static void AddDynamics(const sdf::JointAxis& axis, size_t i, Joint* joint) {
     joint->passive[i] = {axis.SpringStiffness(), axis.SpringReference(), axis.Damping(),
                          axis.Friction()};
     if (axis.SpringStiffness() == 0) joint->passive[i].rest = 0;
+  }
+
+  void AddLimits(const sdf::Joint& from, size_t i, Joint* joint) {
+    constexpr double kUnlimited = 1e15;  // SDF's default limits are 1e16 or infinite
+    const auto bound = [](double value) {
+      return std::abs(value) < kUnlimited ? value : std::copysign(INFINITY, value);
+    };
+    const sdf::JointAxis& axis = *from.Axis(static_cast<unsigned>(i));
+    const Place place{copies_.OriginalOf(from.Element()->FilePath()).string(),
+                      from.Element()->LineNumber().value_or(0)};
+    builder_.SetLimits(place, bound(axis.Lower()), bound(axis.Upper()), i, joint);
   }
 
   void AddFrames(const sdf::Model& model, const std::string& prefix) {
@@ -205,47 +246,130 @@ class Reader {
     }
   }
 
+  const SdfCopies& copies_;
   const std::string file_;
   MechanismBuilder& builder_;
   std::map<std::string, int> links_;
   std::map<std::string, Posed> poses_;
   std::optional<int> ground_;
-  uint64_t left_out_ = 0;
 };
 
 /// libsdformat's errors with the lines that it knows. Some messages quote the whole file.
-FileErrors Collected(const std::string& file, const sdf::Errors& errors) {
+FileErrors Collected(const SdfCopies& copies, const sdf::Errors& errors) {
   constexpr size_t kLongest = 200;
   std::vector<FileError> list;
   for (const sdf::Error& error : errors) {
     std::string message = error.Message().substr(0, kLongest);
     message.resize(std::min(message.size(), message.find('\n')));
-    list.push_back({file, error.LineNumber().value_or(0), 1, "", std::move(message)});
+    list.push_back({copies.OriginalOf(error.FilePath().value_or("")).string(),
+                    error.LineNumber().value_or(0), 1, "", std::move(message)});
   }
   return FileErrors(std::move(list));
 }
 
-/// The one model that moves.
-const sdf::Model& OnlyModel(const std::string& file, const sdf::Root& root,
-                            std::vector<std::string>* notes) {
-  if (root.Model() != nullptr) return *root.Model();
-  const sdf::World* world = root.WorldCount() > 0 ? root.WorldByIndex(0) : nullptr;
-  const sdf::Model* only = nullptr;
-  for (uint64_t i = 0; world != nullptr && i < world->ModelCount(); ++i) {
-    const sdf::Model& model = *world->ModelByIndex(i);
-    if (model.Static()) {
-      notes->push_back(fmt::format("model '{}' is static: left out", model.Name()));
-      continue;
+/// Inertias that no body has are mended later, and are no reason to refuse a file here.
+sdf::Errors WithoutInertias(sdf::Errors errors) {
+  const auto is_inertia = [](const sdf::Error& error) {
+    return error.Code() == sdf::ErrorCode::LINK_INERTIA_INVALID;
+  };
+  const auto is_sequel = [](const sdf::Error& error) {
+    return error.Message() == "Failed to load a world.";
+  };
+  const auto end = std::remove_if(errors.begin(), errors.end(), is_inertia);
+  if (end == errors.end()) return errors;
+  errors.erase(end, errors.end());
+  if (std::all_of(errors.begin(), errors.end(), is_sequel)) return {};
+  return errors;
+}
+
+struct ChosenModel {
+  const sdf::Model* model = nullptr;
+  const sdf::World* world = nullptr;  ///< none: the file has no world
+};
+
+std::vector<ChosenModel> AllModels(const sdf::Root& root) {
+  std::vector<ChosenModel> models;
+  if (root.Model() != nullptr) models.push_back({root.Model(), nullptr});
+  for (uint64_t w = 0; w < root.WorldCount(); ++w) {
+    const sdf::World* world = root.WorldByIndex(w);
+    for (uint64_t i = 0; i < world->ModelCount(); ++i) {
+      models.push_back({world->ModelByIndex(i), world});
     }
-    if (only != nullptr) {
-      throw FileErrors(file, fmt::format("holds several models that move, '{}' and '{}'; a "
-                                         "mechanism is one: keep one, or nest them in a model",
-                                         only->Name(), model.Name()));
-    }
-    only = &model;
   }
-  if (only == nullptr) throw FileErrors(file, "there is no model that moves in it");
-  return *only;
+  return models;
+}
+
+/// The model that is asked for, or the only one that moves. The others are told.
+ChosenModel Choose(const std::string& file, const sdf::Root& root, const std::string& asked,
+                   std::vector<std::string>* notes) {
+  std::vector<ChosenModel> fitting;
+  std::vector<std::string> names;
+  for (const ChosenModel& each : AllModels(root)) {
+    names.push_back(each.model->Name());
+    const bool fits = asked.empty() ? !each.model->Static() : each.model->Name() == asked;
+    if (fits) {
+      fitting.push_back(each);
+    } else {
+      notes->push_back(fmt::format("model '{}' {}", each.model->Name(),
+                                   asked.empty() ? "is static: left out" : "is left out"));
+    }
+  }
+  if (fitting.size() == 1) return fitting[0];
+  if (!fitting.empty()) {
+    throw FileErrors(file, fmt::format("holds several models that move: {}; a mechanism is one: "
+                                       "name it (--model), or nest them in a model",
+                                       fmt::join(names, ", ")));
+  }
+  if (asked.empty()) throw FileErrors(file, "there is no model that moves in it");
+  throw FileErrors(
+      file, fmt::format("there is no model {} in it{}", Quoted(asked), DidYouMean(asked, names)));
+}
+
+Vector3d GravityOf(const sdf::World& world, const SdfDocument& document) {
+  XmlErrors ignored("");
+  for (const XmlElement& each : document.main().root.children) {
+    const std::string* name = each.Attribute("name");
+    if (each.name != "world" || name == nullptr || *name != world.Name()) continue;
+    for (const XmlElement& child : each.children) {
+      if (child.name != "gravity") continue;
+      const std::vector<double> g = ignored.Numbers(child.text, 3, child.line, "gravity");
+      return {g[0], g[1], g[2]};
+    }
+  }
+  return FromSdf(world.Gravity());
+}
+
+void AddCounts(const sdf::Model& model, uint64_t* links, uint64_t* joints) {
+  *links += model.LinkCount();
+  *joints += model.JointCount();
+  for (uint64_t i = 0; i < model.ModelCount(); ++i) {
+    AddCounts(*model.ModelByIndex(i), links, joints);
+  }
+}
+
+/// Of what is wrong with an included file libsdformat prints some and leaves the part out.
+void RequireAllParts(const SdfDocument& document, const sdf::Root& root, bool join_worlds) {
+  uint64_t links = 0, joints = 0;
+  for (const ChosenModel& each : AllModels(root)) AddCounts(*each.model, &links, &joints);
+  const auto require = [&](uint64_t loaded, const char* name) {
+    const int written = CountElements(document, name, join_worlds);
+    if (loaded == static_cast<uint64_t>(written)) return;
+    throw FileErrors(document.main().path.string(),
+                     fmt::format("libsdformat takes {} of {} <{}> of this file and those that it "
+                                 "includes: is each of them right by itself?",
+                                 loaded, written, name));
+  };
+  require(links, "link");
+  require(joints, "joint");
+}
+
+void Load(const SdfDocument& document, const SdfCopies& copies, bool join_worlds, sdf::Root* root) {
+  sdf::Console::Instance()->SetQuiet(true);
+  sdf::ParserConfig config;
+  config.SetWarningsPolicy(sdf::EnforcementPolicy::LOG);
+  const sdf::Errors errors = WithoutInertias(root->LoadSdfString(copies.main(), config));
+  if (!errors.empty()) throw Collected(copies, errors);
+  RequireAllParts(document, *root, join_worlds);
 }
 
 }  // namespace
@@ -255,29 +379,27 @@ bool HasSdfReader() {
 }
 
 ImportedMechanism ReadSdf(const std::filesystem::path& path, const ImportOptions& options) {
-  const std::string file = path.string(), text = ReadTextFile(path);
-  // libsdformat would try whether it is URDF, and say so on the terminal.
-  if (text.find("<sdf") == text.npos) throw FileErrors(file, "there is no <sdf> in it");
-  if (text.find("</sdf>") == text.npos) throw FileErrors(file, "it ends without </sdf>: cut off?");
-  RequireShallowXml(text, file);
-  sdf::Console::Instance()->SetQuiet(true);
-  sdf::ParserConfig config;
-  config.SetWarningsPolicy(sdf::EnforcementPolicy::LOG);
+  const std::string file = path.string();
+  const SdfDocument document = ReadSdfDocument(path);
+  const bool join_worlds = options.model.empty();
+  const SdfCopies copies(document, join_worlds);
   sdf::Root root;
-  const sdf::Errors errors = root.LoadSdfString(text, config);
-  if (!errors.empty()) throw Collected(file, errors);
+  Load(document, copies, join_worlds, &root);
   std::vector<std::string> notes;
-  const sdf::Model& model = OnlyModel(file, root, &notes);
-  MechanismBuilder builder(model.Name());
+  const ChosenModel chosen = Choose(file, root, options.model, &notes);
+  MechanismBuilder builder(chosen.model->Name(), options);
   for (const std::string& note : notes) builder.Note(note);
-  const Reader reader(file, model, &builder);
+  if (!document.left_out.empty()) {
+    builder.Note(fmt::format("left out: {}", fmt::join(document.left_out, ", ")));
+  }
+  const Reader reader(copies, *chosen.model, &builder);
   Vector3d gravity_W(0, 0, -9.81);
-  if (root.WorldCount() > 0) {
-    gravity_W = FromSdf(root.WorldByIndex(0)->Gravity());
+  if (chosen.world != nullptr) {
+    gravity_W = GravityOf(*chosen.world, document);
   } else if (!options.gravity_W) {
     builder.Note("a model has no gravity of its own: 9.81 m/s^2 along -z");
   }
-  return builder.Finish(options, reader.ground(), gravity_W, file);
+  return builder.Finish(reader.ground(), gravity_W, file);
 }
 
 }  // namespace vmech

@@ -2,12 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "vmech/mechanisms/document.h"
-
 namespace vmech {
-namespace {
-
-std::string Escaped(std::string_view text) {
+std::string XmlEscaped(std::string_view text) {
   std::string escaped;
   for (const char c : text) {
     switch (c) {
@@ -30,12 +26,10 @@ std::string Escaped(std::string_view text) {
   return escaped;
 }
 
-}  // namespace
-
 void XmlText::Begin(std::string_view tag, const Attributes& attributes) {
   text_ += fmt::format("{:{}}<{}", "", 2 * open_.size(), tag);
   for (const auto& [key, value] : attributes) {
-    text_ += fmt::format(" {}=\"{}\"", key, Escaped(value));
+    text_ += fmt::format(" {}=\"{}\"", key, XmlEscaped(value));
   }
 }
 
@@ -58,29 +52,13 @@ void XmlText::Element(std::string_view tag, const Attributes& attributes) {
 
 void XmlText::Text(std::string_view tag, std::string_view text, const Attributes& attributes) {
   Begin(tag, attributes);
-  text_ += fmt::format(">{}</{}>\n", Escaped(text), tag);
+  text_ += fmt::format(">{}</{}>\n", XmlEscaped(text), tag);
 }
 
 void XmlText::Comment(std::string_view text) {
   std::string safe(text);
   for (size_t at; (at = safe.find("--")) != safe.npos;) safe.replace(at, 2, "- ");
   text_ += fmt::format("{:{}}<!-- {} -->\n", "", 2 * open_.size(), safe);
-}
-
-void RequireShallowXml(std::string_view text, const std::string& file) {
-  int depth = 0;
-  for (size_t at = text.find('<'); at != text.npos; at = text.find('<', at + 1)) {
-    const size_t end = text.find('>', at);
-    if (end == text.npos) return;  // the parser's business
-    const char next = text[at + 1];
-    if (next == '/') {
-      --depth;
-    } else if (next != '!' && next != '?' && text[end - 1] != '/') {
-      ++depth;
-    }
-    if (depth <= kMaxNesting) continue;
-    throw FileErrors(file, fmt::format("elements are nested more than {} deep", kMaxNesting));
-  }
 }
 
 std::string XmlNumber(double value) {

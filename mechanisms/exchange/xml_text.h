@@ -31,9 +31,8 @@ class XmlText {
   std::vector<std::string> open_;
 };
 
-/// Parsers of XML recurse into nested elements. @throws FileErrors if they are more than
-/// kMaxNesting deep (document.h).
-void RequireShallowXml(std::string_view text, const std::string& file);
+/// A text as it may stand in an attribute or between tags.
+std::string XmlEscaped(std::string_view text);
 
 /// Numbers as the shortest decimals that read back as the same, "1 0.5 -2e-06".
 std::string XmlNumber(double value);

@@ -202,9 +202,12 @@ TEST_F(Sdf, TakesTheGroundThatIsAskedFor) {
   const std::string text = Model(
       "<joint name='j' type='ball'><parent>base</parent><child>arm"
       "</child></joint>");
-  const Mechanism mechanism = ReadText(text, {.ground = "arm", .gravity_W = {}}).mechanism;
+  ImportOptions options;
+  options.ground = "arm";
+  const Mechanism mechanism = ReadText(text, options).mechanism;
   EXPECT_EQ(mechanism.links[mechanism.ground].name, "arm");
-  EXPECT_THROW(ReadText(text, {.ground = "amr", .gravity_W = {}}), FileErrors);
+  options.ground = "amr";
+  EXPECT_THROW(ReadText(text, options), FileErrors);
 }
 
 TEST(SdfWriter, RefusesNamesThatSdfKeepsForItself) {
@@ -262,7 +265,7 @@ std::string JointOf(const std::string& type, const std::string& more = "") {
 INSTANTIATE_TEST_SUITE_P(
     All, MalformedSdf,
     testing::Values(
-        Malformed{"Empty", "", ""}, Malformed{"NotXml", "vmech: \"1.0\"\n", "no <sdf>"},
+        Malformed{"Empty", "", ""}, Malformed{"NotXml", "vmech: \"1.0\"\n", "is not XML"},
         Malformed{"Truncated", Model("").substr(0, 120), ""},
         Malformed{"Binary",
                   std::string("\x7f"
@@ -290,18 +293,24 @@ INSTANTIATE_TEST_SUITE_P(
         Malformed{"ScrewWithoutPitch",
                   JointOf("screw", "<thread_pitch>0</thread_pitch><axis><xyz>0 0 1</xyz></axis>"),
                   "thread_pitch"},
+        Malformed{"ScrewWithoutAnyPitch", JointOf("screw", "<axis><xyz>0 0 1</xyz></axis>"),
+                  "thread_pitch"},
+        Malformed{
+            "ScrewOfALaterVersion",
+            JointOf("screw",
+                    "<screw_thread_pitch>-0.5</screw_thread_pitch><axis><xyz>0 0 1</xyz></axis>"),
+            "<thread_pitch>12.566370614359172</thread_pitch>"},
         Malformed{
             "ObliqueUniversal",
             JointOf("universal", "<axis><xyz>1 0 0</xyz></axis><axis2><xyz>1 1 0</xyz></axis2>"),
             "square"},
-        Malformed{"LooseLink", Model(""), "no chain of joints"},
         Malformed{"NegativeMass",
                   Model("", "<link name='x'><inertial><mass>-1</mass></inertial></link>"), ""},
-        Malformed{"BodyThatIsNone",
+        Malformed{"LinkWithoutJoint",
                   Model("",
                         "<link name='x'><inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1"
                         "</iyy><izz>5</izz></inertia></inertial></link>"),
-                  ""}),
+                  "file.sdf:1:1: links.x: no chain of joints"}),
     [](const auto& info) { return info.param.subject; });
 
 }  // namespace

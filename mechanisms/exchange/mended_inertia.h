@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+
+#include "vmech/mechanisms/mechanism.h"
+
+namespace vmech {
+
+/// The inertia nearest to a given one that some distribution of mass has. [kg m^2]
+///
+///   S = tr(I)/2 1 - I           the second moments of mass, integral of r r' dm,
+///   I = tr(S) 1 - S             and back
+///
+/// are positive semidefinite exactly if no principal moment is negative or above the sum of the two
+/// others [Wensing, Kim, Slotine 2018]. The nearest such S in the Frobenius norm has the
+/// eigenvectors of the given one and its eigenvalues, those below zero put to zero.
+Matrix3d NearestInertia(const Matrix3d& I_cm);
+
+/// Mends what no body has, by as little as can be, and says so with the figures before and after:
+/// an inertia beyond rounding (InertiaDefect) becomes the nearest, and one without mass is dropped.
+/// The judgement is about the centre of gravity, wherever the frame of the link is. Empty if there
+/// is nothing to mend.
+std::string MendInertia(MassProperties* properties);
+
+}  // namespace vmech

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vmech/mechanisms/mechanism.h"
+
+namespace vmech {
+
+/// What stands in a URDF file, in SI units and radians, before anything is made of it.
+
+struct UrdfLink {
+  std::string name;
+  int line = 0;
+  MassProperties mass_properties;  ///< in the axes of the link, as written
+  bool has_inertial = false, has_inertia = false;
+};
+
+enum class UrdfJointType { kRevolute, kContinuous, kPrismatic, kPlanar, kFixed, kFloating };
+
+struct UrdfJoint {
+  std::string name, parent, child;
+  int line = 0;
+  UrdfJointType type = UrdfJointType::kFixed;
+  Posed X_PC;                         ///< child at zero, in the parent
+  Vector3d axis = Vector3d::UnitX();  ///< axes of the child, of any length but zero
+  bool has_limits = false;            ///< `lower` and `upper` are given
+  double lower = 0, upper = 0;        ///< [m] or [rad]
+  double damping = 0, friction = 0;   ///< [N s/m] or [N m s/rad], [N] or [N m]
+  std::string mimics;                 ///< the joint after which it moves; empty: none
+};
+
+struct UrdfRobot {
+  std::string name;
+  std::vector<UrdfLink> links;
+  std::vector<UrdfJoint> joints;
+  /// What is not for a mechanism and is left out, "3 <visual>", in the order of the alphabet.
+  std::vector<std::string> left_out;
+};
+
+/// Reads URDF 1.0 and 1.1. Every number must be finite and every name unique.
+/// @throws FileErrors with all that is wrong, each with its line; `file` names the text.
+UrdfRobot ParseUrdf(std::string_view text, const std::string& file);
+
+/// Indices of the links from the root on, each parent before its children, depth first in the order
+/// of the file. @throws FileErrors if the joints do not make a tree of all links: joints from or to
+/// links that there are not, a link with two parents, a cycle, several roots. `file` names it.
+std::vector<int> LinksFromRoot(const UrdfRobot& robot, const std::string& file);
+
+/// Index of the joint that carries each link; -1 for a root.
+std::vector<int> ParentJoints(const UrdfRobot& robot);
+
+}  // namespace vmech
