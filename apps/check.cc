@@ -11,6 +11,7 @@
 
 #include "vmech/apps/dh_text.h"
 #include "vmech/mechanisms/freedoms.h"
+#include "vmech/mechanisms/plausibility.h"
 
 namespace vmech {
 namespace {
@@ -167,6 +168,7 @@ MechanismCheck CheckMechanism(const Mechanism& mechanism) {
   MechanismCheck check;
   check.assembled = AssembleMechanism(mechanism);
   check.tree = BuildKinematicTree(check.assembled.mechanism);
+  check.doubts = DoubtsOf(mechanism);
   check.dh = DeduceDhTable(check.tree.mechanism, check.tree.spanning);
   const VectorXd q = StartCoordinates(check.tree);
   check.mobility.q_general = q;
@@ -187,6 +189,7 @@ std::string TextReport(const MechanismCheck& check, bool dh) {
         "closure     {:.2g} of the length {:.4g} m, assembled from {:.2g} as the file has it\n",
         check.assembled.summary.error, check.tree.length, check.assembled.summary.start_error);
   }
+  for (const std::string& doubt : check.doubts) text += fmt::format("warning     {}\n", doubt);
   for (const std::string& note : check.assembled.Notes()) {
     text += fmt::format("note        {}\n", note);
   }
@@ -222,6 +225,7 @@ std::string JsonReport(const MechanismCheck& check, bool dh) {
   json["start_error"] = check.assembled.summary.start_error;
   json["rounding"] = check.assembled.correction;
   json["tolerance"] = m.tolerance;
+  json["warnings"] = check.doubts;
   json["characteristic_length"] = check.tree.length;
   if (!check.closed()) {
     json["message"] = check.assembled.summary.message;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "vmech/kinematics/assembled_mechanism.h"
 #include "vmech/kinematics/kinematic_tree.h"
@@ -15,6 +16,7 @@ struct MechanismCheck {
   AssembledMechanism assembled;
   Mobility mobility;  ///< only if the loops close
   DhTable dh;
+  std::vector<std::string> doubts;  ///< DoubtsOf the mechanism as it is stated
 
   bool closed() const { return assembled.summary.closed; }
 };

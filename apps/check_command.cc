@@ -19,12 +19,17 @@ struct Checked {
   ExitCode code = kSuccess;
 };
 
+ExitCode CodeOf(const MechanismCheck& check, bool strict) {
+  if (!check.closed()) return kNoSolution;
+  return strict && !check.doubts.empty() ? kBadInput : kSuccess;
+}
+
 Checked CheckFile(const std::filesystem::path& path, const CheckArguments& arguments) {
   Mechanism mechanism = ReadAs({"check", {FileKind::kMechanism}}, path, ReadMechanism);
   if (arguments.tolerance) mechanism.tolerance = *arguments.tolerance;
   const MechanismCheck check = CheckMechanism(mechanism);
   return {arguments.json ? JsonReport(check, arguments.dh) : TextReport(check, arguments.dh),
-          check.closed() ? kSuccess : kNoSolution};
+          CodeOf(check, arguments.strict)};
 }
 
 /// The same of one file among several: a file that is wrong does not keep the others from being

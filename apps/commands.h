@@ -23,7 +23,8 @@ struct CheckArguments {
   std::vector<std::filesystem::path> mechanisms;  ///< one or several
   std::optional<double> tolerance;                ///< instead of the mechanism's own
   bool json = false;
-  bool dh = false;  ///< the Denavit-Hartenberg rows as well
+  bool dh = false;      ///< the Denavit-Hartenberg rows as well
+  bool strict = false;  ///< warnings are errors
 };
 /// Checks every file; returns the greatest of their exit codes.
 int RunCheck(const CheckArguments& arguments);
@@ -33,7 +34,8 @@ struct LoadsArguments {
   std::filesystem::path out;        ///< empty: "<study>-loads" in the current folder
   std::optional<double> tolerance;  ///< instead of the mechanism's own
   bool quiet = false;
-  int threads = 0;  ///< 0: all processors
+  int threads = 0;      ///< 0: all processors
+  bool strict = false;  ///< warnings are errors: nothing is written
 };
 int RunLoads(const LoadsArguments& arguments);
 

@@ -18,6 +18,7 @@
 #include "vmech/kinematics/assembled_mechanism.h"
 #include "vmech/kinematics/forward_kinematics.h"
 #include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/plausibility.h"
 
 namespace vmech {
 namespace {
@@ -83,6 +84,7 @@ Mechanism Assembled(const HapticArguments& arguments, Mechanism mechanism) {
   }
   if (!arguments.quiet) {
     for (const std::string& note : assembled.Notes()) fmt::print("note: {}\n", note);
+    for (const std::string& doubt : DoubtsOf(mechanism)) fmt::print("warning: {}\n", doubt);
   }
   return assembled.mechanism;
 }

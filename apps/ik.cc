@@ -17,6 +17,7 @@
 #include "vmech/kinematics/loops.h"
 #include "vmech/kinematics/unseen_motions.h"
 #include "vmech/mechanisms/freedoms.h"
+#include "vmech/mechanisms/plausibility.h"
 #include "vmech/mechanisms/reader.h"
 
 namespace vmech {
@@ -169,6 +170,9 @@ Mechanism AssembledAt(Mechanism mechanism, const std::vector<StartValue>& start,
   const AssembledMechanism assembled = RequireAssembled(mechanism, options);
   const std::vector<std::string> notes = assembled.Notes();
   warnings->insert(warnings->end(), notes.begin(), notes.end());
+  constexpr bool kMassesDoNotMatter = true;
+  const std::vector<std::string> doubts = DoubtsOf(mechanism, kMassesDoNotMatter);
+  warnings->insert(warnings->end(), doubts.begin(), doubts.end());
   return assembled.mechanism;
 }
 

@@ -110,6 +110,14 @@ std::string BearingLines(const StudyFile& file, const BearingRequest& request,
   return text;
 }
 
+/// @throws FileErrors with every warning.
+void RequireNoWarning(const std::filesystem::path& study, const StudyOutcome& outcome) {
+  std::vector<FileError> errors;
+  for (const std::string& warning : outcome.warnings)
+    errors.push_back({study.string(), 0, 0, "", warning});
+  if (!errors.empty()) throw FileErrors(errors);
+}
+
 void PrintSummary(const StudyFile& file, const StudyOutcome& outcome, const ResultFolder& folder) {
   fmt::print("{}: {}\n{}\n", file.name, file.motion, outcome.loads.BriefReport());
   fmt::print("{}{}", JointLines(file, outcome.loads), RuleLine(file, outcome.loads));
@@ -141,6 +149,7 @@ int RunLoads(const LoadsArguments& arguments) {
     };
     outcome = RunNamed(file, options);
   }
+  if (arguments.strict) RequireNoWarning(arguments.study, outcome);
   folder.Write("loads.csv", LoadsTable(file, outcome.loads, options.threads));
   folder.Write("motion.csv", MotionTable(file, outcome.loads, options.threads));
   folder.Write("certainty.csv", CertaintyTable(file, outcome.loads));

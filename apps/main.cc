@@ -214,6 +214,8 @@ void AddReplay(CLI::App* app, vmech::ReplayArguments* replay) {
   command->add_flag("-q,--quiet", replay->quiet, "print nothing but errors");
 }
 
+constexpr const char* kStrictHelp = "take warnings for errors: exit code 2";
+
 void AddCheck(CLI::App* app, vmech::CheckArguments* check) {
   CLI::App* command = app->add_subcommand("check", kCheckHelp);
   command->add_option("MECHANISM", check->mechanisms, "mechanism files, YAML or JSON")
@@ -221,6 +223,7 @@ void AddCheck(CLI::App* app, vmech::CheckArguments* check) {
       ->type_name("FILE");
   AddTolerance(command, &check->tolerance);
   command->add_flag("--dh", check->dh, "print the Denavit-Hartenberg rows as well");
+  command->add_flag("--strict", check->strict, kStrictHelp);
   command->add_flag("--json", check->json, "print JSON instead of text");
 }
 
@@ -237,6 +240,7 @@ void AddLoads(CLI::App* app, vmech::LoadsArguments* loads) {
       ->check(CLI::Range(0, 64, "0..64"))
       ->capture_default_str();
   AddTolerance(command, &loads->tolerance);
+  command->add_flag("--strict", loads->strict, kStrictHelp);
   command->add_flag("-q,--quiet", loads->quiet, "print nothing but errors");
 }
 

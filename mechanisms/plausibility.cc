@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 
 #include "vmech/mechanisms/freedoms.h"
 #include "vmech/mechanisms/mass_properties.h"
@@ -32,9 +33,10 @@ double Reach(const Link& link) {
 
 /// Inertias in the wrong unit are off by 1e3 (g, t) or 1e6 (mm^2), radii of gyration by their
 /// roots. A moment of zero is a point mass, and meant.
-void DoubtGyration(const DisplayUnits& units, const Link& link, double reach, Doubts* doubts) {
+void DoubtGyration(const DisplayUnits& units, const Link& link, Doubts* doubts) {
   constexpr double kFar = 4, kNear = 1e-2;
   const MassProperties& body = link.mass_properties;
+  const double reach = Reach(link);
   const double largest = PrincipalMoments(body.I_Lcm)[2];
   if (!(body.mass > 0) || !(largest > 0) || reach == 0) return;
   const double radius = std::sqrt(largest / body.mass);
@@ -45,13 +47,24 @@ void DoubtGyration(const DisplayUnits& units, const Link& link, double reach, Do
       link.name, LengthText(units, radius), LengthText(units, reach)));
 }
 
-void DoubtSize(const DisplayUnits& units, const Link& link, double reach, Doubts* doubts) {
-  constexpr double kLong = 20, kShort = 1e-4;  // [m]
-  if (reach == 0 || (reach > kShort && reach < kLong)) return;
-  doubts->push_back(
-      fmt::format("link '{}' is {:.4g} m long (its figures are read in {}); check "
-                  "`units: {{length: ...}}`",
-                  link.name, reach, units.length));
+/// Of the longest link, and of the shortest that has a length.
+void DoubtSize(const Mechanism& mechanism, Doubts* doubts) {
+  constexpr double kLong = 10, kShort = 1e-4;  // [m]
+  const auto doubt = [&](const Link& link, double reach, std::string_view which) {
+    doubts->push_back(fmt::format(
+        "the {} link, '{}', is {:.4g} m long (its figures are read in {}); check `units: {{length: "
+        "...}}`",
+        which, link.name, reach, mechanism.units.length));
+  };
+  const Link *longest = nullptr, *shortest = nullptr;
+  for (const Link& link : mechanism.links) {
+    const double reach = Reach(link);
+    if (reach == 0) continue;
+    if (!longest || reach > Reach(*longest)) longest = &link;
+    if (!shortest || reach < Reach(*shortest)) shortest = &link;
+  }
+  if (longest && Reach(*longest) > kLong) doubt(*longest, Reach(*longest), "longest");
+  if (shortest && Reach(*shortest) < kShort) doubt(*shortest, Reach(*shortest), "shortest");
 }
 
 void DoubtGravity(const Mechanism& mechanism, Doubts* doubts) {
@@ -59,8 +72,8 @@ void DoubtGravity(const Mechanism& mechanism, Doubts* doubts) {
   const double g = mechanism.gravity_W.norm();
   if (g == 0 || (g > kWeak && g < kStrong)) return;
   doubts->push_back(fmt::format(
-      "gravity is {:.6g} m/s^2, on earth it is 9.81; `gravity` is always in m/s^2, whatever the "
-      "units of lengths",
+      "gravity is {:.6g} m/s^2, on earth it is 9.81; `gravity` is in m/s^2 whatever the unit of "
+      "lengths, unless `units: {{acceleration: ...}}` says otherwise",
       g));
 }
 
@@ -92,12 +105,10 @@ void DoubtStart(const DisplayUnits& units, const Joint& joint, Doubts* doubts) {
 std::vector<std::string> DoubtsOf(const Mechanism& mechanism, bool loaded) {
   Doubts doubts;
   for (size_t i = 0; i < mechanism.links.size(); ++i) {
-    const Link& link = mechanism.links[i];
-    const double reach = Reach(link);
-    DoubtSize(mechanism.units, link, reach, &doubts);
     if (static_cast<int>(i) == mechanism.ground) continue;
-    DoubtGyration(mechanism.units, link, reach, &doubts);
+    DoubtGyration(mechanism.units, mechanism.links[i], &doubts);
   }
+  DoubtSize(mechanism, &doubts);
   DoubtGravity(mechanism, &doubts);
   if (!loaded && !HasMass(mechanism)) {
     doubts.push_back(

@@ -71,6 +71,7 @@ void Print(const ImportedFile& imported, const MechanismCheck& check, const Outp
     fmt::print("mobility    {}\n", check.mobility.mobility);
     for (const std::string& note : check.assembled.Notes()) fmt::print("note        {}\n", note);
   }
+  for (const std::string& doubt : check.doubts) fmt::print("warning     {}\n", doubt);
   fmt::print("written to {}\n", outputs.names());
 }
 
