@@ -36,6 +36,16 @@ std::pair<std::string, std::string> Split(const std::string& text, const char* o
   return {text.substr(0, at), text.substr(at + 1)};
 }
 
+/// The names in "A,B,C": at least two.
+std::vector<std::string> NamesIn(const std::string& text) {
+  std::vector<std::string> names;
+  std::istringstream words(text);
+  for (std::string name; std::getline(words, name, ',');) names.push_back(name);
+  if (names.size() >= 2) return names;
+  throw std::invalid_argument(
+      fmt::format("--weld {} does not name two bodies, as in --weld door,leaf", Quoted(text)));
+}
+
 Vector3d VectorFrom(const std::string& text) {
   std::istringstream words(text);
   std::vector<double> numbers;
@@ -46,9 +56,13 @@ Vector3d VectorFrom(const std::string& text) {
   return {numbers[0], numbers[1], numbers[2]};
 }
 
+constexpr double kMetresPerMillimetre = 1e-3;
+
 struct Raw {
   std::vector<std::string> densities, joint_types;
+  std::vector<std::string> welds;
   std::string gravity;
+  double tolerance_mm = ContactOptions().tolerance / kMetresPerMillimetre;
 };
 
 void AddCadOptions(CLI::App* app, ImportArguments* options, Raw* raw) {
@@ -58,16 +72,23 @@ void AddCadOptions(CLI::App* app, ImportArguments* options, Raw* raw) {
       ->type_name("[NAME=]VALUE");
   app->add_option("--joint", raw->joint_types, "type of a joint; may be given several times")
       ->type_name("NAME=TYPE");
-  app->add_option("--rigid", options->cad.bodies.rigid,
-                  "a subassembly in which nothing moves; may be given several times")
+  app->add_option(
+         "--rigid", options->cad.bodies.rigid,
+         "a subassembly in which nothing moves, or a part that belongs to what it touches; "
+         "may be given several times")
+      ->type_name("NAME");
+  app->add_option("--weld", raw->welds, "bodies or parts that are one; may be given several times")
+      ->type_name("A,B[,C...]");
+  app->add_option("--moving", options->cad.bodies.moving,
+                  "a part that is a link though it looks like a screw or pin; may be given several "
+                  "times")
       ->type_name("NAME");
   app->add_option("--ignore", options->cad.bodies.ignore,
                   "a part or subassembly to leave out; may be given several times")
       ->type_name("NAME");
   app->add_flag("--propose", options->cad.propose,
                 "take the joints that shafts in bores, balls in sockets and planes suggest");
-  app->add_option("--tolerance", options->cad.contacts.tolerance,
-                  "greatest gap between surfaces in contact [m]")
+  app->add_option("--tolerance", raw->tolerance_mm, "greatest gap between surfaces in contact [mm]")
       ->capture_default_str();
   app->add_flag("--allow-unmatched", options->cad.allow_unmatched,
                 "keep anchors that have no partner");
@@ -126,6 +147,10 @@ void TakeRaw(const Raw& raw, ImportArguments* options) {
     }
     options->cad.joint_types.emplace_back(name, *type);
   }
+  for (const std::string& text : raw.welds) {
+    options->cad.bodies.weld.push_back(NamesIn(text));
+  }
+  options->cad.contacts.tolerance = raw.tolerance_mm * kMetresPerMillimetre;
   if (!raw.gravity.empty()) {
     options->cad.gravity_W = VectorFrom(raw.gravity);
   }

@@ -61,7 +61,7 @@ std::string BearingText(const Joint& joint, const JointSeat& seat) {
   std::vector<std::string> positions;
   for (const double z : seat.positions) positions.push_back(Millimetres(z));
   if (positions.empty()) positions = {"0"};
-  const std::string shaft = Millimetres(seat.shaft_diameter);
+  const std::string shaft = Millimetres(seat.nominal_diameter);
   std::string text = fmt::format("  \"{}\": {{positions: [{}], locating: 0, shaft: [{}, {}]",
                                  joint.name, fmt::join(positions, ", "), shaft, shaft);
   if (seat.housing_diameter > 0) text += ", housing: " + Millimetres(seat.housing_diameter);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <map>
 #include <set>
 
@@ -19,22 +20,22 @@ bool Contains(const std::vector<std::string>& names, const std::string& name) {
 }
 
 void RequireKnown(const CadAssembly& assembly, const BodyOptions& options) {
-  std::vector<std::string> groups, all;
-  for (const CadGroup& group : assembly.groups) groups.push_back(group.name);
-  all = groups;
+  std::vector<std::string> all;
+  for (const CadGroup& group : assembly.groups) all.push_back(group.name);
   for (const CadPart& part : assembly.parts) all.push_back(part.name);
   std::vector<FileError> errors;
-  const auto check = [&](const std::vector<std::string>& asked,
-                         const std::vector<std::string>& known, const char* what) {
+  const auto check = [&](const std::vector<std::string>& asked) {
     for (const std::string& name : asked) {
-      if (Contains(known, name)) continue;
-      errors.push_back(
-          {assembly.file, 0, 0, "",
-           fmt::format("there is no {} {}{}", what, Quoted(name), DidYouMean(name, known))});
+      if (Contains(all, name)) continue;
+      errors.push_back({assembly.file, 0, 0, "",
+                        fmt::format("there is no part or subassembly {}{}", Quoted(name),
+                                    DidYouMean(name, all))});
     }
   };
-  check(options.rigid, groups, "subassembly");
-  check(options.ignore, all, "part or subassembly");
+  check(options.rigid);
+  check(options.ignore);
+  check(options.moving);
+  for (const auto& welded : options.weld) check(welded);
   if (!errors.empty()) throw FileErrors(errors);
 }
 
@@ -96,12 +97,22 @@ std::vector<CadBody> FindBodies(const CadAssembly& assembly, const BodyOptions& 
   return bodies;
 }
 
+bool IsUsualGround(const std::string& name) {
+  std::string lower = name;
+  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  static const std::set<std::string> usual{"ground", "frame", "base", "housing", "stand"};
+  return usual.count(lower) > 0;
+}
+
 WorldFeatures FeaturesOf(const CadAssembly& assembly, const CadBody& body) {
   WorldFeatures features;
   for (const int p : body.parts) {
     const CadPart& part = assembly.parts[p];
+    const bool is_fastener =
+        std::find(body.fasteners.begin(), body.fasteners.end(), p) != body.fasteners.end();
     for (CadFeature feature : assembly.shapes[part.shape].features) {
       feature.X_PF = part.X_WP * feature.X_PF;
+      feature.fastens = is_fastener;
       features.push_back(feature);
     }
   }

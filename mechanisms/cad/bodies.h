@@ -11,14 +11,19 @@ namespace vmech {
 /// What moves as one: a link to be.
 struct CadBody {
   std::string name;
-  Posed X_WL;               ///< the axes of the subassembly or part
-  std::vector<int> parts;   ///< indices in CadAssembly
-  std::vector<int> frames;  ///< those that vmech knows (frame_name.h)
+  Posed X_WL;                       ///< the axes of the subassembly or part
+  std::vector<int> parts;           ///< indices in CadAssembly
+  std::vector<int> frames;          ///< those that vmech knows (frame_name.h)
+  std::vector<int> fasteners = {};  ///< those of `parts` that are screws, rivets, pins
 };
 
 struct BodyOptions {
-  std::vector<std::string> rigid;   ///< subassemblies in which nothing moves
+  /// Subassemblies in which nothing moves, and parts that belong to what they touch.
+  std::vector<std::string> rigid;
   std::vector<std::string> ignore;  ///< parts and subassemblies to be left out
+  /// Bodies or parts that are one body: each list is joined to its first.
+  std::vector<std::vector<std::string>> weld = {};
+  std::vector<std::string> moving = {};  ///< parts that are no fasteners (fasteners.h)
 };
 
 /// The bodies of an assembly:
@@ -30,6 +35,9 @@ struct BodyOptions {
 /// @throws FileErrors if an option names no part or subassembly of the file.
 std::vector<CadBody> FindBodies(const CadAssembly& assembly, const BodyOptions& options,
                                 std::vector<int>* loose);
+
+/// True for the names by which a body is taken for the ground: ground, frame, base, housing, stand.
+bool IsUsualGround(const std::string& name);
 
 /// The features of all parts of a body, in world axes.
 WorldFeatures FeaturesOf(const CadAssembly& assembly, const CadBody& body);

@@ -39,6 +39,7 @@ struct CadFeature {
   double length = 0;  ///< of a cylinder, along its axis [m]
   /// Box around a plane's face, in the axes of F: least and greatest x, y, z [m].
   Vector3d lower = Vector3d::Zero(), upper = Vector3d::Zero();
+  bool fastens = false;  ///< of a screw, rivet or pin, which sits in wider or tapped holes
 };
 
 /// Triangles for a viewer, in the axes of the part [m], corners counterclockwise seen from outside.

@@ -11,131 +11,102 @@
 namespace vmech {
 namespace {
 
-constexpr double kParallel = 1e-3;     // [rad] between axes of a fit, normals in contact
-constexpr double kLeastOverlap = 0.1;  // of the shorter length or side
 constexpr double kFreeShare = 1e-9;    // eigenvalue of a free motion, of the largest
 constexpr double kNoRotation = 1e-5;   // of a twist of length one
 constexpr double kWiderHousing = 1.1;  // a bore beyond it holds a bearing, not the shaft itself
 constexpr size_t kMostPositions = 2;   // of bearings at one joint
+constexpr double kMillimetre = 1e-3;
+// How far shafts of the fits m6 to f7 are above and below their nominal diameter [m].
+constexpr double kThickerShaft = 2e-5, kThinnerShaft = 3e-5;
 
-struct Contact {
-  CadSurface surface;  ///< of one side
-  Vector3d p_W, axis_W;
-  double radius = 0;
-};
-
-Vector3d AxisOf(const CadFeature& feature) {
-  return feature.X_PF.R.col(2);
+/// The axis of a contact lies on that of another.
+bool AreCoaxial(const SurfaceContact& a, const SurfaceContact& b, double tolerance) {
+  return a.axis_W.cross(b.axis_W).norm() <= kParallelAxes &&
+         (b.p_W - a.p_W).cross(a.axis_W).norm() <= tolerance + kDrawn;
 }
 
-double DistanceFromAxis(const Vector3d& p, const CadFeature& cylinder) {
-  return (p - cylinder.X_PF.p).cross(AxisOf(cylinder)).norm();
+/// True if all shafts among the contacts share one axis, and there is no ball.
+bool TurnsAboutOneShaft(const std::vector<SurfaceContact>& contacts, double tolerance) {
+  return std::all_of(contacts.begin(), contacts.end(), [&](const SurfaceContact& contact) {
+    return contact.surface == CadSurface::kPlane ||
+           (contact.surface == CadSurface::kShaft &&
+            AreCoaxial(contacts.front(), contact, tolerance));
+  });
 }
 
-bool RadiiFit(double inner, double outer, const ContactOptions& options) {
-  return outer - inner > -options.tolerance &&
-         outer - inner < std::max(options.tolerance, options.clearance * outer);
-}
-
-/// The stretch of an axis that two cylinders on it share, from the middle of the first.
-std::optional<std::pair<double, double>> SharedStretch(const CadFeature& a, const CadFeature& b) {
-  const double middle = (b.X_PF.p - a.X_PF.p).dot(AxisOf(a));
-  const double low = std::max(-0.5 * a.length, middle - 0.5 * b.length);
-  const double high = std::min(0.5 * a.length, middle + 0.5 * b.length);
-  if (high - low < kLeastOverlap * std::min(a.length, b.length)) return std::nullopt;
-  return std::pair{low, high};
-}
-
-std::optional<Contact> CylinderContact(const CadFeature& shaft, const CadFeature& bore,
-                                       const ContactOptions& options) {
-  if (!RadiiFit(shaft.radius, bore.radius, options)) return std::nullopt;
-  if (AxisOf(shaft).cross(AxisOf(bore)).norm() > kParallel) return std::nullopt;
-  if (DistanceFromAxis(shaft.X_PF.p, bore) > options.tolerance) return std::nullopt;
-  const auto stretch = SharedStretch(shaft, bore);
-  if (!stretch) return std::nullopt;
-  const double middle = 0.5 * (stretch->first + stretch->second);
-  return Contact{CadSurface::kShaft, shaft.X_PF.p + middle * AxisOf(shaft), AxisOf(shaft),
-                 shaft.radius};
-}
-
-std::optional<Contact> BallContact(const CadFeature& ball, const CadFeature& socket,
-                                   const ContactOptions& options) {
-  if (!RadiiFit(ball.radius, socket.radius, options)) return std::nullopt;
-  if ((ball.X_PF.p - socket.X_PF.p).norm() > options.tolerance) return std::nullopt;
-  return Contact{CadSurface::kBall, ball.X_PF.p, Vector3d::Zero(), ball.radius};
-}
-
-std::optional<Contact> PlaneContact(const CadFeature& a, const CadFeature& b,
-                                    const ContactOptions& options) {
-  if ((AxisOf(a) + AxisOf(b)).norm() > kParallel) return std::nullopt;
-  const Posed X_AB = a.X_PF.inverse() * b.X_PF;
-  if (std::abs(X_AB.p.z()) > options.tolerance) return std::nullopt;
-  Vector3d low = Vector3d::Constant(INFINITY), high = -low;
-  for (int corner = 0; corner < 4; ++corner) {
-    const Vector3d p_B{(corner & 1) != 0 ? b.upper.x() : b.lower.x(),
-                       (corner & 2) != 0 ? b.upper.y() : b.lower.y(), 0};
-    low = low.cwiseMin(X_AB * p_B);
-    high = high.cwiseMax(X_AB * p_B);
+/// Makes axes and normals parallel, and shafts coaxial, that are so within the tolerances, else
+/// what a fit leaves free would seem to be held by two fits that are a little off.
+void Align(double tolerance, std::vector<SurfaceContact>* contacts) {
+  for (auto it = contacts->begin(); it != contacts->end(); ++it) {
+    const auto model = std::find_if(contacts->begin(), it, [&](const SurfaceContact& earlier) {
+      return earlier.surface != CadSurface::kBall && it->surface != CadSurface::kBall &&
+             earlier.axis_W.cross(it->axis_W).norm() <= kParallelAxes;
+    });
+    if (model == it) continue;
+    it->axis_W = (model->axis_W.dot(it->axis_W) < 0 ? -1 : 1) * model->axis_W;
+    const bool are_shafts = model->surface == it->surface && it->surface == CadSurface::kShaft;
+    if (!are_shafts || !AreCoaxial(*model, *it, tolerance)) continue;
+    it->p_W = model->p_W + (it->p_W - model->p_W).dot(model->axis_W) * model->axis_W;
   }
-  const Vector3d lower = low.cwiseMax(a.lower), upper = high.cwiseMin(a.upper);
-  for (int i = 0; i < 2; ++i) {
-    const double side = std::min(high[i] - low[i], a.upper[i] - a.lower[i]);
-    if (upper[i] - lower[i] < kLeastOverlap * side) return std::nullopt;
-  }
-  Vector3d middle = 0.5 * (lower + upper);
-  middle.z() = 0;
-  return Contact{CadSurface::kPlane, a.X_PF * middle, AxisOf(a)};
 }
 
-std::optional<Contact> FindContact(const CadFeature& a, const CadFeature& b,
-                                   const ContactOptions& options) {
-  const auto are = [&](CadSurface first, CadSurface second) {
-    return a.surface == first && b.surface == second;
+/// Which turns of the first body about the axis a plane blocks: bit 1 the positive, bit 2 the
+/// negative ones. The first body moves with w x r at r from the axis, and cannot move along its own
+/// outward normal n: a turn is blocked where its sign times (axis x r).n is above zero.
+int BlockedTurns(const SurfaceContact& plane, const SurfaceContact& shaft) {
+  int blocked = 0;
+  for (const Vector3d& corner_W : plane.corners_W) {
+    const double arm = shaft.axis_W.cross(corner_W - shaft.p_W).dot(plane.axis_W);
+    if (arm > kDrawn) blocked |= 1;
+    if (arm < -kDrawn) blocked |= 2;
+  }
+  return blocked;
+}
+
+/// Takes out the planes of a stop: where a body turns about one shaft, and all planes along the
+/// shaft block turns of one sense only.
+void LeaveOutStops(double tolerance, std::vector<SurfaceContact>* contacts) {
+  const SurfaceContact shaft = contacts->front();
+  if (shaft.surface != CadSurface::kShaft || !TurnsAboutOneShaft(*contacts, tolerance)) return;
+  const auto is_along = [&](const SurfaceContact& contact) {
+    return contact.surface == CadSurface::kPlane &&
+           contact.axis_W.cross(shaft.axis_W).norm() > kParallelAxes;
   };
-  if (are(CadSurface::kShaft, CadSurface::kBore)) return CylinderContact(a, b, options);
-  if (are(CadSurface::kBore, CadSurface::kShaft)) return CylinderContact(b, a, options);
-  if (are(CadSurface::kBall, CadSurface::kSocket)) return BallContact(a, b, options);
-  if (are(CadSurface::kSocket, CadSurface::kBall)) return BallContact(b, a, options);
-  if (are(CadSurface::kPlane, CadSurface::kPlane)) return PlaneContact(a, b, options);
-  return std::nullopt;
-}
-
-/// A box around a feature in world axes.
-void Extend(const CadFeature& feature, Vector3d* low, Vector3d* high) {
-  const Vector3d reach = Vector3d::Constant(std::max(feature.radius, 0.5 * feature.length));
-  *low = low->cwiseMin(feature.X_PF.p - reach);
-  *high = high->cwiseMax(feature.X_PF.p + reach);
-  for (int corner = 0; corner < 4 && feature.surface == CadSurface::kPlane; ++corner) {
-    const Vector3d p =
-        feature.X_PF * Vector3d((corner & 1) != 0 ? feature.upper.x() : feature.lower.x(),
-                                (corner & 2) != 0 ? feature.upper.y() : feature.lower.y(), 0);
-    *low = low->cwiseMin(p);
-    *high = high->cwiseMax(p);
+  int blocked = 0;
+  for (const SurfaceContact& contact : *contacts) {
+    if (is_along(contact)) blocked |= BlockedTurns(contact, shaft);
   }
+  if (blocked != 1 && blocked != 2) return;
+  contacts->erase(std::remove_if(contacts->begin(), contacts->end(), is_along), contacts->end());
 }
 
-bool AreApart(const WorldFeatures& a, const WorldFeatures& b, double tolerance) {
-  Vector3d low_a = Vector3d::Constant(INFINITY), high_a = -low_a, low_b = low_a, high_b = high_a;
-  for (const CadFeature& feature : a) Extend(feature, &low_a, &high_a);
-  for (const CadFeature& feature : b) Extend(feature, &low_b, &high_b);
-  return ((low_a - high_b).array() > tolerance).any() ||
-         ((low_b - high_a).array() > tolerance).any();
-}
-
-std::vector<Contact> FindContacts(const WorldFeatures& a, const WorldFeatures& b,
-                                  const ContactOptions& options) {
-  std::vector<Contact> contacts;
-  if (AreApart(a, b, options.tolerance)) return contacts;
-  for (const CadFeature& one : a) {
-    for (const CadFeature& other : b) {
-      if (const auto contact = FindContact(one, other, options)) contacts.push_back(*contact);
-    }
+/// Adds the shoulders between which a shaft has end play, unless a shoulder is in contact already.
+void AddShoulders(const WorldFeatures& a, const WorldFeatures& b, const ContactOptions& options,
+                  std::vector<SurfaceContact>* contacts) {
+  const SurfaceContact shaft = contacts->front();
+  if (shaft.surface != CadSurface::kShaft) return;
+  for (const SurfaceContact& contact : *contacts) {
+    if (contact.surface == CadSurface::kPlane) return;
   }
+  for (const SurfaceContact& end : FindShoulders(a, b, shaft, options)) contacts->push_back(end);
+}
+
+/// What holds two bodies together: cylinders first, then balls; they say where the joint is.
+std::vector<SurfaceContact> HoldingContacts(const WorldFeatures& a, const WorldFeatures& b,
+                                            const ContactOptions& options) {
+  std::vector<SurfaceContact> contacts = FindContacts(a, b, options);
+  if (contacts.empty()) return contacts;
+  std::stable_sort(
+      contacts.begin(), contacts.end(),
+      [](const SurfaceContact& x, const SurfaceContact& y) { return x.surface < y.surface; });
+  Align(options.tolerance, &contacts);
+  LeaveOutStops(options.tolerance, &contacts);
+  AddShoulders(a, b, options, &contacts);
   return contacts;
 }
 
 /// The rows of a contact, squared and summed: C'C for the twist [v; w length] at the point O.
-Matrix6d SquaredRows(const Contact& contact, const Vector3d& p_WO, double length) {
+Matrix6d SquaredRows(const SurfaceContact& contact, const Vector3d& p_WO, double length) {
   const Matrix3d one = Matrix3d::Identity();
   const Matrix3d along = contact.axis_W * contact.axis_W.transpose();
   Eigen::Matrix<double, 3, 6> velocity;  // v at the contact = v + w x p
@@ -159,7 +130,7 @@ Posed FrameOnAxis(const Vector3d& p, const Vector3d& z) {
 
 /// The joint of the free twists: columns [v; w length] at O. `anchor` is where its frame should be.
 std::optional<ProposedJoint> JointOf(const MatrixXd& free, const Vector3d& p_WO, double length,
-                                     const Contact& anchor) {
+                                     const SurfaceContact& anchor) {
   ProposedJoint joint;
   joint.radius = anchor.radius;
   joint.X_WJ =
@@ -193,8 +164,9 @@ WorldFeatures AroundAxis(const WorldFeatures& features, CadSurface surface, cons
                          double tolerance) {
   WorldFeatures found;
   for (const CadFeature& feature : features) {
-    if (feature.surface == surface && AxisOf(feature).cross(X_WJ.R.col(2)).norm() < kParallel &&
-        DistanceFromAxis(X_WJ.p, feature) < tolerance) {
+    if (feature.surface == surface &&
+        AxisOf(feature).cross(X_WJ.R.col(2)).norm() <= kParallelAxes &&
+        DistanceFromAxis(X_WJ.p, feature) <= tolerance + kDrawn) {
       found.push_back(feature);
     }
   }
@@ -208,8 +180,14 @@ JointSeat SeatOn(const CadFeature& shaft, const WorldFeatures& bores, const Pose
   for (const CadFeature& bore : bores) {
     if (bore.radius < shaft.radius - tolerance || !SharedStretch(shaft, bore)) continue;
     seat.positions.push_back((bore.X_PF.p - X_WJ.p).dot(X_WJ.R.col(2)));
-    if (bore.radius > kWiderHousing * shaft.radius) seat.housing_diameter = 2 * bore.radius;
+    const double diameter = 2 * bore.radius;
+    if (bore.radius > kWiderHousing * shaft.radius) {
+      seat.housing_diameter = diameter;
+    } else if (seat.bore_diameter == 0 || diameter < seat.bore_diameter) {
+      seat.bore_diameter = diameter;
+    }
   }
+  seat.nominal_diameter = NominalDiameter(seat.shaft_diameter, seat.bore_diameter);
   std::sort(seat.positions.begin(), seat.positions.end());
   if (seat.positions.size() > kMostPositions) {
     seat.positions = {seat.positions.front(), seat.positions.back()};
@@ -217,11 +195,11 @@ JointSeat SeatOn(const CadFeature& shaft, const WorldFeatures& bores, const Pose
   return seat;
 }
 
-std::string Describe(const std::vector<Contact>& contacts) {
+std::string Describe(const std::vector<SurfaceContact>& contacts) {
   std::string text;
   int planes = 0;
   double last_radius = 0;
-  for (const Contact& contact : contacts) {
+  for (const SurfaceContact& contact : contacts) {
     planes += contact.surface == CadSurface::kPlane;
     if (contact.radius == 0 || contact.radius == last_radius) continue;
     last_radius = contact.radius;
@@ -239,36 +217,27 @@ std::string Describe(const std::vector<Contact>& contacts) {
 
 }  // namespace
 
-void ContactOptions::Validate() const {
-  const auto require = [](const char* name, double value, double low, double high) {
-    if (value >= low && value <= high) return;
-    throw std::invalid_argument(
-        fmt::format("ContactOptions: {} = {} is not in {:g}..{:g}", name, value, low, high));
-  };
-  require("tolerance [m]", tolerance, 1e-7, 1e-2);
-  require("clearance", clearance, 0, 0.5);
-}
-
 std::optional<ProposedJoint> ProposeJoint(const WorldFeatures& a, const WorldFeatures& b,
                                           const ContactOptions& options) {
   options.Validate();
-  std::vector<Contact> contacts = FindContacts(a, b, options);
+  const std::vector<SurfaceContact> contacts = HoldingContacts(a, b, options);
   if (contacts.empty()) return std::nullopt;
-  // Cylinders first, then balls: they say where the joint is.
-  std::stable_sort(contacts.begin(), contacts.end(),
-                   [](const Contact& x, const Contact& y) { return x.surface < y.surface; });
   const Vector3d p_WO = contacts.front().p_W;
   double length = contacts.front().radius;
-  for (const Contact& contact : contacts) length = std::max(length, (contact.p_W - p_WO).norm());
+  for (const SurfaceContact& contact : contacts)
+    length = std::max(length, (contact.p_W - p_WO).norm());
   if (length == 0) length = 1;
 
   Matrix6d squared = Matrix6d::Zero();
-  for (const Contact& contact : contacts) squared += SquaredRows(contact, p_WO, length);
+  for (const SurfaceContact& contact : contacts) squared += SquaredRows(contact, p_WO, length);
   const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(squared);
   int free = 0;
   while (free < 6 && eigen.eigenvalues()[free] < kFreeShare * eigen.eigenvalues()[5]) ++free;
   auto joint = JointOf(eigen.eigenvectors().leftCols(free), p_WO, length, contacts.front());
-  if (joint) joint->why = Describe(contacts);
+  if (!joint) return joint;
+  joint->why = Describe(contacts);
+  joint->fastened = std::any_of(contacts.begin(), contacts.end(),
+                                [](const SurfaceContact& contact) { return contact.fastens; });
   return joint;
 }
 
@@ -284,12 +253,23 @@ JointSeat FindSeat(const WorldFeatures& a, const WorldFeatures& b, const Posed& 
       const double middle = (shaft.X_PF.p - X_WJ.p).dot(X_WJ.R.col(2));
       const std::pair<bool, double> rank{candidate.positions.empty(),
                                          std::abs(middle) - 0.5 * shaft.length};
-      if (!(rank < best) || (rank.first && rank.second > options.tolerance)) continue;
+      if (!(rank < best) || (rank.first && rank.second > options.tolerance + kDrawn)) continue;
       best = rank;
       seat = candidate;
     }
   }
   return seat;
+}
+
+double NominalDiameter(double shaft, double bore) {
+  const bool has_play = bore > shaft + kDrawn;
+  const double play = has_play ? bore - shaft : 0;
+  const double middle = shaft + 0.5 * play;
+  const double whole = std::round(middle / kMillimetre) * kMillimetre;
+  const double low = shaft - std::max(play, kThickerShaft);
+  const double high = shaft + std::max(2 * play, kThinnerShaft);
+  if (whole > 0 && whole >= low - kDrawn && whole <= high + kDrawn) return whole;
+  return has_play ? bore : shaft;
 }
 
 }  // namespace vmech

@@ -39,6 +39,12 @@ void AddBodies(const CadImport& import, std::string* text) {
 std::string SeatText(const JointSeat& seat) {
   if (seat.shaft_diameter == 0) return {};
   std::string text = fmt::format(", shaft {:.6g} mm", 1e3 * seat.shaft_diameter);
+  if (seat.bore_diameter > seat.shaft_diameter + kDrawn) {
+    text += fmt::format(" in a bore of {:.6g} mm", 1e3 * seat.bore_diameter);
+  }
+  if (std::abs(seat.nominal_diameter - seat.shaft_diameter) > kDrawn) {
+    text += fmt::format(", nominal {:.6g} mm", 1e3 * seat.nominal_diameter);
+  }
   if (seat.housing_diameter > 0) {
     text += fmt::format(" in a housing of {:.6g} mm", 1e3 * seat.housing_diameter);
   }
@@ -56,6 +62,23 @@ void AddJoints(const CadImport& import, std::string* text) {
                          mechanism.links[joint.second.link].name, Clean(1e3 * imported.distance),
                          Clean(kDegrees * imported.angle), SeatText(imported.seat),
                          imported.from_geometry ? ", by its geometry: " + imported.why : "");
+  }
+}
+
+void AddMerges(const CadImport& import, std::string* text) {
+  if (import.merges.empty()) return;
+  *text += "\nNo links of their own\n";
+  for (const BodyMerge& merge : import.merges) {
+    *text += fmt::format("  {} belongs to {}, {}{}\n", merge.body, merge.into, merge.why,
+                         merge.is_guess ? fmt::format(" (--moving {})", merge.body) : "");
+  }
+}
+
+void AddNearMisses(const CadImport& import, std::string* text) {
+  if (import.near_misses.empty()) return;
+  *text += "\nNo fits by a little (--tolerance)\n";
+  for (const NearMiss& miss : import.near_misses) {
+    *text += fmt::format("  {} - {}, {}\n", miss.first_body, miss.second_body, miss.what);
   }
 }
 
@@ -87,8 +110,10 @@ std::string CadImport::FullReport() const {
   std::string text = fmt::format("{}: {}, unit of length {}\n", mechanism.name, file,
                                  unit.empty() ? "not given" : unit);
   AddBodies(*this, &text);
+  AddMerges(*this, &text);
   AddJoints(*this, &text);
   AddUnmatched(*this, &text);
+  AddNearMisses(*this, &text);
   if (!mechanism.grasps.empty()) {
     text += fmt::format("\n{} grasp{}\n", mechanism.grasps.size(),
                         mechanism.grasps.size() > 1 ? "s" : "");

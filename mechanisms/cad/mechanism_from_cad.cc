@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -23,11 +22,6 @@ const Vector3d kUsualGravity{0, 0, -9.81};  // [m/s^2]
 constexpr double kWorthSayingGap = 1e-5;    // [m]
 constexpr double kWorthSayingSkew = 1e-3;   // [rad]
 
-std::string Lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 /// Makes the mechanism step by step; what is wrong is collected and thrown at the end.
 class Importer {
  public:
@@ -46,11 +40,15 @@ class Importer {
     bodies_ = FindBodies(assembly_, options_.bodies, &loose_frames_);
     if (bodies_.empty()) Error("no part is left");
     ThrowErrors();
+    result_.merges =
+        MergeBodies(assembly_, options_.bodies, options_.contacts, options_.ground, &bodies_);
+    GuessFasteners();
     ChooseGround();
     AddLinks();
     CollectFrames();
     AddNamedJoints();
     ProposeJoints();
+    FindMisses();
     CheckOptions();
     ThrowErrors();
     CheckConnected();
@@ -87,10 +85,7 @@ class Importer {
                         DidYouMean(options_.ground, names)));
       return ThrowErrors();
     }
-    ground = find([](const std::string& name) {
-      static const std::set<std::string> usual{"ground", "frame", "base", "housing", "stand"};
-      return usual.count(Lower(name)) > 0;
-    });
+    ground = find(IsUsualGround);
     if (ground < count) {
       Guess(fmt::format("{} is the ground, by its name (--ground)", Quoted(names[ground])));
     } else if (!loose_frames_.empty()) {
@@ -128,6 +123,15 @@ class Importer {
       features_.push_back(FeaturesOf(assembly_, body));
     }
     GuessDensities();
+  }
+
+  void GuessFasteners() {
+    std::string names;
+    for (const BodyMerge& merge : result_.merges) {
+      if (merge.is_guess) names += (names.empty() ? "" : ", ") + merge.body;
+    }
+    if (names.empty()) return;
+    Guess(fmt::format("fasteners, which belong to what they sit in: {} (--moving)", names));
   }
 
   void GuessDensities() {
@@ -265,7 +269,9 @@ class Importer {
     imported->angle = fit.angle;
     imported->gap = fit.gap;
     imported->skew = fit.skew;
-    if (type == JointType::kRevolute || type == JointType::kCylindrical) {
+    // A shaft that nothing stops may be a piston; the user's own word is taken.
+    const bool is_guide = type == JointType::kCylindrical && imported->from_geometry;
+    if (type == JointType::kRevolute || (type == JointType::kCylindrical && !is_guide)) {
       imported->seat = FindSeat(features_[first], features_[second], X_WF, options_.contacts);
     }
     mechanism.joints.push_back(std::move(joint));
@@ -302,14 +308,20 @@ class Importer {
     result_.unmatched.push_back(std::move(unmatched));
   }
 
-  /// Between bodies that no named joint connects.
+  /// Between bodies that no named joint connects. Where no frame says what is a joint, the geometry
+  /// does; what screws hold together is welded in any case.
   void ProposeJoints() {
+    const bool take_all = options_.propose || frames_.empty();
+    if (!options_.propose && take_all) {
+      Guess("no coordinate system is an anchor; the joints are those of the geometry (--propose)");
+    }
     for (int a = 0; a < static_cast<int>(bodies_.size()); ++a) {
       for (int b = a + 1; b < static_cast<int>(bodies_.size()); ++b) {
         if (joined_.count({a, b}) > 0) continue;
         const auto proposed = ProposeJoint(features_[a], features_[b], options_.contacts);
         if (!proposed) continue;
-        if (options_.propose) {
+        const bool is_screwed = proposed->fastened && proposed->type == JointType::kWeld;
+        if (take_all || is_screwed) {
           TakeProposal(*proposed, a, b);
         } else {
           result_.hints.push_back({bodies_[a].name, bodies_[b].name, *proposed});
@@ -331,6 +343,16 @@ class Importer {
     Guess(fmt::format("joint {} is {}: {}", Quoted(name), NameOf(type), proposed.why));
   }
 
+  void FindMisses() {
+    for (size_t a = 0; a < bodies_.size(); ++a) {
+      for (size_t b = a + 1; b < bodies_.size(); ++b) {
+        for (std::string& what : FindNearMisses(features_[a], features_[b], options_.contacts)) {
+          result_.near_misses.push_back({bodies_[a].name, bodies_[b].name, std::move(what)});
+        }
+      }
+    }
+  }
+
   void CheckOptions() {
     std::vector<std::string> joints;
     for (const Joint& joint : result_.mechanism.joints) joints.push_back(joint.name);
@@ -349,6 +371,10 @@ class Importer {
       for (const JointHint& hint : result_.hints) {
         text += fmt::format("\n  the geometry suggests: {} - {}, {} ({})", hint.first_body,
                             hint.second_body, NameOf(hint.joint.type), hint.joint.why);
+      }
+      for (const NearMiss& miss : result_.near_misses) {
+        text += fmt::format("\n  no fit by a little: {} - {}, {} (--tolerance)", miss.first_body,
+                            miss.second_body, miss.what);
       }
       text += result_.hints.empty()
                   ? "; give the parts anchors, or leave them out (--ignore)"

@@ -8,6 +8,7 @@
 #include "vmech/mechanisms/cad/bodies.h"
 #include "vmech/mechanisms/cad/body_mass.h"
 #include "vmech/mechanisms/cad/contacts.h"
+#include "vmech/mechanisms/cad/fasteners.h"
 #include "vmech/mechanisms/mechanism.h"
 
 namespace vmech {
@@ -28,7 +29,9 @@ struct CadImportOptions {
   std::optional<Vector3d> gravity_W;
   /// Types by joint, before what the frames say.
   std::vector<std::pair<std::string, JointType>> joint_types;
-  bool propose = false;          ///< take the joints that the geometry suggests, too
+  /// Take the joints that the geometry suggests, too. They are taken anyway if no frame is an
+  /// anchor; and so are the welds of what screws hold together.
+  bool propose = false;
   bool allow_unmatched = false;  ///< keep anchors without a partner as anchors
 };
 
@@ -66,6 +69,12 @@ struct JointHint {
   ProposedJoint joint;
 };
 
+/// A shaft and a bore, or a ball and a socket, that are no fit by a little.
+struct NearMiss {
+  std::string first_body, second_body;
+  std::string what;  ///< "shaft of 10 mm and bore of 10 mm: axes 0.12 mm apart, 0.1 mm allowed"
+};
+
 struct CadImport {
   std::string file;
   std::string unit;
@@ -76,6 +85,8 @@ struct CadImport {
   std::vector<JointHint> hints;
   std::vector<std::string> guesses;  ///< what was assumed, in words
   std::vector<std::string> remarks;  ///< of the file: renamed, passed over, implausible
+  std::vector<BodyMerge> merges;     ///< bodies that became part of others
+  std::vector<NearMiss> near_misses;
 
   /// A page for a terminal: bodies with their mass and its source, joints with distances and
   /// angles, shafts, what was guessed.

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <regex>
@@ -11,6 +10,7 @@
 #include <string_view>
 #include <unordered_set>
 
+#include "vmech/mechanisms/cad/part_name.h"
 #include "vmech/mechanisms/cad/step_reader.h"
 #include "vmech/mechanisms/document.h"
 
@@ -18,50 +18,85 @@ namespace vmech {
 namespace {
 
 constexpr double kSmallest = 1e-3, kLargest = 100;  // [m] of a plausible assembly
-constexpr size_t kLongestName = 80;                 // leaves room for numbers behind it
 
 constexpr size_t kMaxStepBytes = size_t{1} << 30;
 constexpr size_t kEnds = 256;  // bytes in which the first and the last words must stand
 
-struct Entities {
-  std::unordered_set<long> defined, referenced;
-};
-
-/// The entities "#12" of a STEP file; what stands in texts and comments is passed over. One that is
-/// followed by '=' is defined there.
-Entities FindEntities(std::string_view text) {
-  Entities entities;
-  for (size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '\'') {
-      i = std::min(text.find('\'', i + 1), text.size());
-    } else if (text.substr(i, 2) == "/*") {
-      i = std::min(text.find("*/", i + 2), text.size());
-    } else if (text[i] == '#') {
-      long number = 0;
-      const auto [end, error] =
-          std::from_chars(text.data() + i + 1, text.data() + text.size(), number);
-      if (error != std::errc()) continue;
-      i = static_cast<size_t>(end - text.data()) - 1;
-      const size_t next = text.find_first_not_of(" \t\r\n", i + 1);
-      const bool is_definition = next != std::string_view::npos && text[next] == '=';
-      (is_definition ? entities.defined : entities.referenced).insert(number);
+/// What the text of a STEP file defines and refers to, and the first fault of it, in words. What
+/// stands in texts and comments is passed over.
+class EntityScan {
+ public:
+  explicit EntityScan(std::string_view text) : text_(text) {
+    for (size_t i = 0; i < text.size(); ++i) i = Visit(i);
+    for (const long number : referenced_) {
+      if (defined_.count(number) > 0) continue;
+      SetFault(fmt::format("it refers to #{}, which it does not hold", number));
     }
   }
-  return entities;
-}
 
-/// A name that files can hold (Node::CheckName).
-std::string Clean(std::string name, const std::string& fallback) {
-  for (char& c : name) {
-    const bool refused = c == '/' || c == ',' || c == '"' || c == '\\';
-    if (refused || std::iscntrl(static_cast<unsigned char>(c))) c = '_';
+  const std::string& fault() const { return fault_; }
+
+ private:
+  /// Looks at a character; returns the last one of what begins there.
+  size_t Visit(size_t i) {
+    if (text_[i] == '\'') return std::min(text_.find('\'', i + 1), text_.size());
+    if (text_.substr(i, 2) == "/*") return std::min(text_.find("*/", i + 2), text_.size());
+    if (text_[i] == '#') return VisitEntity(i);
+    if (text_[i] == '\0') SetFault("there is a zero byte", i);
+    if (IsExponent(i)) CheckExponent(i);
+    return i;
   }
-  if (name.size() > kLongestName) name.resize(kLongestName);
-  while (!name.empty() && (static_cast<unsigned char>(name.back()) & 0xC0) == 0x80) name.pop_back();
-  while (!name.empty() && name.back() == ' ') name.pop_back();
-  name.erase(0, name.find_first_not_of(' '));
-  return name.empty() ? fallback : name;
-}
+
+  /// "#12" is defined if '=' follows.
+  size_t VisitEntity(size_t i) {
+    long number = 0;
+    const auto [end, error] =
+        std::from_chars(text_.data() + i + 1, text_.data() + text_.size(), number);
+    if (error != std::errc()) return i;
+    const auto after = static_cast<size_t>(end - text_.data());
+    const size_t next = text_.find_first_not_of(" \t\r\n", after);
+    if (next == std::string_view::npos || text_[next] != '=') {
+      referenced_.insert(number);
+    } else if (!defined_.insert(number).second) {
+      SetFault(fmt::format("it defines #{} a second time", number), i);
+    }
+    return after - 1;
+  }
+
+  bool IsExponent(size_t i) const {
+    const bool is_letter = text_[i] == 'E' || text_[i] == 'e';
+    return is_letter && i > 0 && kDigits.find(text_[i - 1]) != std::string_view::npos;
+  }
+
+  void CheckExponent(size_t i) {
+    const size_t first = text_.find_last_not_of(kDigits, i - 1) + 1;
+    const size_t sign = text_.find_first_not_of('+', i + 1);
+    const size_t end = std::min(text_.find_first_not_of(kDigits, sign), text_.size());
+    if (sign == std::string_view::npos || text_[sign] == '-') return;
+    int exponent = 0;
+    const auto [stop, error] = std::from_chars(text_.data() + sign, text_.data() + end, exponent);
+    if (error == std::errc::result_out_of_range || exponent >= kMostDigits) {
+      SetFault(fmt::format("{} is beyond the range of numbers", text_.substr(first, end - first)),
+               i);
+    }
+  }
+
+  void SetFault(const std::string& fault, size_t i) {
+    if (!fault_.empty()) return;
+    const auto end = text_.begin() + static_cast<std::string_view::difference_type>(i);
+    SetFault(fmt::format("{} (line {})", fault, 1 + std::count(text_.begin(), end, '\n')));
+  }
+  void SetFault(const std::string& fault) {
+    if (fault_.empty()) fault_ = fault;
+  }
+
+  static constexpr std::string_view kDigits = "0123456789.";
+  static constexpr int kMostDigits = 308;  // before the point, of a double
+
+  const std::string_view text_;
+  std::unordered_set<long> defined_, referenced_;
+  std::string fault_;
+};
 
 /// Gives every item a name of its own: "bolt", "bolt-2", "bolt-3".
 template <typename Item>
@@ -116,7 +151,7 @@ void StepReadOptions::Validate() const {
   }
 }
 
-void RequireWholeStepFile(const std::filesystem::path& path) {
+bool RequireWholeStepFile(const std::filesystem::path& path) {
   const std::string text = ReadTextFile(path, kMaxStepBytes);
   const std::string_view view = text;
   if (view.substr(0, kEnds).find("ISO-10303-21") == std::string::npos) {
@@ -133,14 +168,10 @@ void RequireWholeStepFile(const std::filesystem::path& path) {
         "places components by a mirror or a scale (CARTESIAN_TRANSFORMATION_OPERATOR_3D); "
         "make the mirrored or scaled component a part of its own in the CAD system");
   }
-  const Entities entities = FindEntities(view);
-  for (const long reference : entities.referenced) {
-    if (entities.defined.count(reference) > 0) continue;
-    throw FileErrors(path.string(),
-                     fmt::format("is damaged: it refers to #{}, which it does not hold; export or "
-                                 "copy it again",
-                                 reference));
-  }
+  const EntityScan scan(view);
+  if (scan.fault().empty()) return IsUtf8(view);
+  throw FileErrors(path.string(),
+                   fmt::format("is damaged: {}; export or copy it again", scan.fault()));
 }
 
 std::string ComponentName(const std::string& component, const std::string& product) {
@@ -152,9 +183,9 @@ void FinishAssembly(CadAssembly* assembly) {
   if (assembly->parts.empty()) {
     throw FileErrors(assembly->file, "holds no part with a surface; is the assembly empty?");
   }
-  for (CadPart& part : assembly->parts) part.name = Clean(part.name, "part");
-  for (CadGroup& group : assembly->groups) group.name = Clean(group.name, "group");
-  for (CadFrame& frame : assembly->frames) frame.name = Clean(frame.name, "frame");
+  for (CadPart& part : assembly->parts) part.name = CleanName(part.name, "part");
+  for (CadGroup& group : assembly->groups) group.name = CleanName(group.name, "group");
+  for (CadFrame& frame : assembly->frames) frame.name = CleanName(frame.name, "frame");
   MakeUnique(&assembly->parts, "part", &assembly->remarks);
   MakeUnique(&assembly->groups, "subassembly", &assembly->remarks);
   RemarkOnUnits(assembly);

@@ -37,25 +37,29 @@ def export(document, out, study=None, drives=(), rpm=60):
     """Writes the mechanism file `out` (.yaml), and a study if its path is given. Returns the report
     of `vmech import`, also if its loops do not close ("NOT ASSEMBLED"). The way leads through STEP
     files, which any CAD system can write."""
-    parts = marks.links(document)
-    if not parts:
+    links = marks.links(document)
+    if not links:
         raise marks.MarkError("the document holds no link: put each part with its anchors into a "
                               "Std Part, or mark an anchor on it")
     document.recompute()
     arguments = ["--out", out]
     fixed = marks.ground(document)
     if fixed is not None:
-        arguments += ["--ground", fixed.Label,
+        arguments += ["--ground", marks.file_name(fixed.Label),
                       "--gravity", " ".join(repr(value) for value in fixed.VmechGravity)]
+    for link in links:
+        if marks.is_container(link):
+            arguments += ["--rigid", marks.file_name(link.Label)]
     for label, density in marks.densities(document):
-        arguments += ["--density", f"{label}={density}"]
+        arguments += ["--density", f"{marks.file_name(label)}={density}"]
     if study is not None:
         arguments += ["--study", study, "--rpm", rpm]
         for joint in drives:
             arguments += ["--drive", joint]
     with tempfile.TemporaryDirectory() as folder:
         step = pathlib.Path(folder) / (document.Label.replace("/", "-") + ".step")
-        Import.export(parts, str(step))
+        with marks.emptied_folders(document):
+            Import.export(marks.roots(document), str(step))
         return run("import", step, *arguments, accepted=(0, 3))
 
 

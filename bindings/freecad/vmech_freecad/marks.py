@@ -1,9 +1,13 @@
 """What a document says about its mechanism, all of it visible in the tree.
 
-A link is an App::Part that stands in no other one, with all that is in it. A local coordinate
-system called anchor_JOINT, one on each of two links, is a joint; grasp_NAME is a grasp. Density,
-ground and gravity are properties of the objects they belong to (group "vmech").
+A link is an App::Part with all that is in it, or an App::Link to something solid: an instance. An
+App::Part that holds nothing but parts and instances is an assembly, whose members are links; plain
+groups are looked through. A local coordinate system called anchor_JOINT, one on each of two links,
+is a joint; grasp_NAME is a grasp. Density, ground and gravity are properties of the objects they
+belong to (group "vmech").
 """
+
+import contextlib
 
 import FreeCAD
 import Part
@@ -11,6 +15,8 @@ import Part
 JOINT_TYPES = ("revolute", "prismatic", "cylindrical", "universal", "spherical", "planar", "weld")
 GRAVITY = FreeCAD.Vector(0, 0, -9.81)  # m/s^2
 GROUP = "vmech"
+FOLDER = "App::DocumentObjectGroup"
+MARKS = ("anchor_", "dof_", "closing_", "fix_", "frame_", "grasp_")
 
 
 class MarkError(ValueError):
@@ -18,32 +24,101 @@ class MarkError(ValueError):
 
 
 def links(document):
-    """The App::Parts that stand in no other one and hold a solid."""
-    return [part for part in document.Objects
-            if part.TypeId == "App::Part" and part.getParentGeoFeatureGroup() is None
-            and any(solids(part))]
+    """Parts and instances that are links, in the order of the document."""
+    return [thing for thing in document.Objects
+            if _can_be_link(thing) and not is_assembly(thing) and any(solids(thing))
+            and all(is_assembly(group) for group in groups_around(thing))]
+
+
+def groups_around(thing):
+    """The parts that an object stands in, the innermost first."""
+    group = thing.getParentGeoFeatureGroup()
+    while group is not None:
+        yield group
+        group = group.getParentGeoFeatureGroup()
+
+
+def is_assembly(part):
+    """True for an App::Part of nothing but links: neither a solid nor a mark is directly in it."""
+    if part.TypeId != "App::Part":
+        return False
+    members = _members(part)
+    return (any(_can_be_link(member) and any(solids(member)) for member in members)
+            and not any(_is_mark(member) or _is_solid(member) for member in members))
+
+
+def is_container(link):
+    """True for a link that is a group of the STEP file; else it is one shape there."""
+    shown = link.getLinkedObject()
+    return (shown.TypeId in ("App::Part", "App::LinkGroup")
+            or getattr(link, "ElementCount", 0) > 0)
+
+
+def file_name(label):
+    """The name that `vmech import` gives to what is called so in the document."""
+    return "".join("_" if c in '/,"\\' else c for c in label).strip()
 
 
 def solids(link):
     """The objects with solids in a link, at any depth; of a PartDesign body only the body."""
-    for child in link.Group:
-        if child.TypeId == "App::Part":
-            yield from solids(child)
-        elif getattr(child, "Shape", None) is not None and child.Shape.Solids:
-            yield child
+    if _is_instance(link):
+        yield link
+    for member in _members(link) if link.TypeId == "App::Part" else ():
+        if member.TypeId == "App::Part":
+            yield from solids(member)
+        elif _is_instance(member) or _is_solid(member):
+            yield member
+
+
+def roots(document):
+    """The outermost objects that hold all links: what is to be exported."""
+    found = []
+    for link in links(document):
+        root = [link, *groups_around(link)][-1]
+        if root not in found:
+            found.append(root)
+    return found
+
+
+@contextlib.contextmanager
+def emptied_folders(document):
+    """Empties the folders of parts for a while: FreeCAD writes what is in one twice, as a member of
+    the folder and of the part."""
+    folders = [(thing, thing.Group) for thing in document.Objects
+               if thing.TypeId == FOLDER and thing.getParentGeoFeatureGroup() is not None]
+    try:
+        for folder, _ in folders:
+            folder.Group = []
+        yield
+    finally:
+        for folder, members in folders:
+            folder.Group = members
+
+
+def place(link, placement):
+    """Puts a link at a placement in the axes of the document [mm]."""
+    link.Placement = global_placement_of_group(link).inverse() * placement
+
+
+def global_placement_of_group(thing):
+    """Of the axes in which an object's placement is given."""
+    group = thing.getParentGeoFeatureGroup()
+    return FreeCAD.Placement() if group is None else group.getGlobalPlacement()
 
 
 def link_of(thing):
-    """The link of an object. One that stands alone becomes a link of its own name."""
-    outermost = thing
-    while outermost.getParentGeoFeatureGroup() is not None:
-        outermost = outermost.getParentGeoFeatureGroup()
+    """The link of an object, as a part that can hold marks. A solid or an instance that stands
+    alone becomes a part of its own name."""
+    outermost = [each for each in (thing, *groups_around(thing)) if not is_assembly(each)][-1]
     if outermost.TypeId == "App::Part":
         return outermost
+    group = outermost.getParentGeoFeatureGroup()
     link = thing.Document.addObject("App::Part", "Link")
     name = outermost.Label
     outermost.Label = name + "-solid"
     link.Label = name
+    if group is not None:
+        group.addObject(link)
     link.addObject(outermost)
     return link
 
@@ -108,6 +183,28 @@ def densities(document):
                 yield thing.Label, thing.VmechDensity
 
 
+def _members(part):
+    """What is in a part; FreeCAD counts what is in its folders, too."""
+    return [member for member in part.Group if member.TypeId != FOLDER]
+
+
+def _can_be_link(thing):
+    return thing.TypeId == "App::Part" or _is_instance(thing)
+
+
+def _is_instance(thing):
+    """True for an App::Link, or a group of them, that shows a solid."""
+    return thing.TypeId in ("App::Link", "App::LinkGroup") and bool(Part.getShape(thing).Solids)
+
+
+def _is_solid(thing):
+    return thing.isDerivedFrom("Part::Feature") and bool(thing.Shape.Solids)
+
+
+def _is_mark(thing):
+    return thing.Label.lower().startswith(MARKS)
+
+
 def _name(text):
     text = text.strip()
     if not text or any(c in text for c in '/,"\\=') or "__" in text:
@@ -117,11 +214,11 @@ def _name(text):
 
 def _mark(thing, element, label):
     if isinstance(element, str):
-        element = thing.Shape.getElement(element)
+        element = Part.getShape(thing, element, needSubElement=True)
     placement = frame_on(element)
-    link = link_of(thing)
     # Elements of a shape stand in the axes of the group that holds the object.
-    to_world = thing.getGlobalPlacement() * thing.Placement.inverse()
+    to_world = global_placement_of_group(thing)
+    link = link_of(thing)
     frame = link.Document.addObject("PartDesign::CoordinateSystem", "LCS")
     frame.Label = label
     link.addObject(frame)

@@ -66,8 +66,9 @@ def show(document, loads, pose=0, longest=None):
     largest solid. Returns the group of arrows."""
     clear(document)
     for link in marks.links(document):
-        if link.Label in loads.moving_links():
-            link.Placement = loads.placement(link.Label, pose)
+        name = marks.file_name(link.Label)
+        if name in loads.moving_links():
+            marks.place(link, loads.placement(name, pose))
     largest = max((loads.force(joint, i)[1].Length
                    for joint in loads.joints() for i in range(len(loads))), default=0)
     longest = longest or _size(document) / 3
@@ -103,7 +104,7 @@ def _arrow(point, vector):
 
 def _size(document):
     """The largest solid, from corner to corner."""
-    return max((solid.Shape.BoundBox.DiagonalLength
+    return max((Part.getShape(solid).BoundBox.DiagonalLength
                 for link in marks.links(document) for solid in marks.solids(link)), default=0)
 
 

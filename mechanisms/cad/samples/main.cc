@@ -30,6 +30,9 @@ int main(int argc, char** argv) {
     Write(vmech::samples::BuildFourBar, folder / "four-bar.step");
     Write(vmech::samples::BuildRssr, folder / "rssr.step");
     Write(vmech::samples::BuildArm, folder / "arm.step");
+    Write(vmech::samples::BuildDoor, folder / "door.step");
+    Write(vmech::samples::BuildPump, folder / "pump.step");
+    Write(vmech::samples::BuildLinkage, folder / "linkage.step");
   } catch (const std::exception& error) {
     std::fprintf(stderr, "cad_samples: %s\n", error.what());
     return 2;

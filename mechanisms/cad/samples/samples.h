@@ -19,4 +19,16 @@ void BuildRssr(StepWriter* step);
 /// kind.
 void BuildArm(StepWriter* step);
 
+// Without anchors: joints, screws and pins are found by their surfaces.
+
+/// A door on two hinges, each of two leaves, a pin of 7.98 mm in bores of 8 mm and four screws of
+/// 4 mm in clearance holes of 4.5 mm and core holes of 3.2 mm.
+void BuildDoor(StepWriter* step);
+/// A compressor with the play of real ones: pins of 9.98 mm in 10 mm, a pressed crank pin, 0.3 mm
+/// of end play at the rod.
+void BuildPump(StepWriter* step);
+/// A crank-rocker whose rocker is the mirror image of its crank but for the length, with four equal
+/// bolts; rod and bolts stand in nested subassemblies whose names end in letters beyond ASCII.
+void BuildLinkage(StepWriter* step);
+
 }  // namespace vmech::samples

@@ -154,6 +154,12 @@ TopoDS_Shape Cut(const TopoDS_Shape& a, const TopoDS_Shape& b) {
   return BRepAlgoAPI_Cut(a, b).Shape();
 }
 
+TopoDS_Shape Mirrored(const TopoDS_Shape& shape) {
+  gp_Trsf mirror;
+  mirror.SetMirror(gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(0, 1, 0)));
+  return BRepBuilderAPI_Transform(shape, mirror, true).Shape();
+}
+
 TopoDS_Shape Drawn(const Posed& X_AB, const TopoDS_Shape& shape) {
   return BRepBuilderAPI_Transform(shape, Placement(X_AB), true).Shape();
 }

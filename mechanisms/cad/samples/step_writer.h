@@ -57,6 +57,8 @@ TopoDS_Shape Cylinder(const Vector3d& foot, const Vector3d& direction, double ra
 TopoDS_Shape Ball(const Vector3d& center, double radius);
 TopoDS_Shape Join(const TopoDS_Shape& a, const TopoDS_Shape& b);
 TopoDS_Shape Cut(const TopoDS_Shape& a, const TopoDS_Shape& b);
+/// The shape as a mirror in the plane y = 0 shows it.
+TopoDS_Shape Mirrored(const TopoDS_Shape& shape);
 /// The shape with other coordinates: drawn in B, in the axes of A.
 TopoDS_Shape Drawn(const Posed& X_AB, const TopoDS_Shape& shape);
 

@@ -63,6 +63,41 @@ class Import(unittest.TestCase):
             bores = {row["joint"]: float(row["bore"]) for row in csv.DictReader(file)}
         self.assertEqual(bores, {"main": 0.020, "pin": 0.017, "wrist": 0.012})
 
+    def test_pins_with_play_get_the_bearings_of_their_nominal_diameter(self):
+        run = self.run_import(SAMPLES / "pump.step", "--study", "study.yaml", "--gravity",
+                              "0 -9.81 0", "--rpm", 600)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("mobility    1", run.stdout)
+        self.assertIn("shaft 9.98 mm in a bore of 10 mm, nominal 10 mm", run.stdout)
+        self.assertIn("wrist-pin belongs to rod, fastener: shaft of 9.98 mm in a bore of 10 mm "
+                      "(--moving wrist-pin)", run.stdout)
+        loads = vmech("loads", "study.yaml", "--out", "loads", folder=self.folder)
+        self.assertEqual(loads.returncode, 0, loads.stderr)
+        with open(self.folder / "loads/bearings.csv", newline="", encoding="utf-8") as file:
+            bores = {row["joint"]: float(row["bore"]) for row in csv.DictReader(file)}
+        self.assertEqual(bores, {"housing-crank": 0.020, "crank-rod": 0.012, "rod-piston": 0.010})
+
+    def test_a_door_is_made_of_the_bodies_that_are_asked_for(self):
+        door = SAMPLES / "door.step"
+        run = self.run_import(door)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("6 bodies", run.stdout)
+        self.assertIn("mobility    1", run.stdout)
+        run = self.run_import(door, "--weld", "frame,leaf-of-frame,leaf-of-frame-2", "--weld",
+                              "door,leaf-of-door,leaf-of-door-2")
+        self.assertIn("2 bodies", run.stdout)
+        self.assertIn("leaf-of-door-2 belongs to door, asked for (--weld)", run.stdout)
+        run = self.run_import(door, "--moving", "screw-3")
+        self.assertIn("7 bodies", run.stdout)
+
+    def test_tolerance_is_in_millimetres_and_what_misses_it_is_named(self):
+        run = self.run_import(SAMPLES / "door.step", "--tolerance", 0.001)
+        self.assertNotEqual(run.stdout + run.stderr, "")
+        for tolerance, joints in ((0.1, "revolute"), (0.5, "revolute")):
+            run = self.run_import(SAMPLES / "door.step", "--tolerance", tolerance)
+            self.assertEqual(run.returncode, 0, run.stderr)
+            self.assertIn(joints, run.stdout)
+
     def test_meshes_enclose_what_the_links_weigh(self):
         run = self.run_import(SAMPLES / "four-bar.step", "--meshes", "meshes", "--density", STEEL)
         self.assertEqual(run.returncode, 0, run.stderr)
@@ -106,7 +141,8 @@ class Import(unittest.TestCase):
         self.assert_refused("there is no body 'frme' to be the ground; did you mean 'frame'?",
                             sample, "--ground", "frme")
         self.assert_refused("'hinge' is none of revolute", sample, "--joint", "main=hinge")
-        self.assert_refused("tolerance [m] = 1 is not in 1e-07..0.01", sample, "--tolerance", 1)
+        self.assert_refused("tolerance [mm] = 100 is not in 0.0001..10", sample, "--tolerance", 100)
+        self.assert_refused("--weld 'crank' does not name two bodies", sample, "--weld", "crank")
         self.assert_refused("--gravity '0 down' is not three numbers", sample, "--gravity",
                             "0 down")
         robot = self.folder / "robot.urdf"

@@ -197,5 +197,88 @@ class Addon(unittest.TestCase):
             command.export(self.model.document, self.folder / "slider.yaml")
 
 
+class Containers(unittest.TestCase):
+    """Two levers on the pins of a base, in an assembly with folders and instances."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.file = pathlib.Path(folder.name) / "levers.yaml"
+        self.document = FreeCAD.newDocument("levers")
+        self.addCleanup(lambda: FreeCAD.closeDocument(self.document.Name))
+        self.assembly = self.document.addObject("App::Part", "Assembly")
+        self.assembly.Placement = Placement(Vector(5, 6, 7), Rotation(Z, 20))
+        self.folder = self.document.addObject("App::DocumentObjectGroup", "Folder")
+        self.assembly.addObject(self.folder)
+        self.base = self.part("base", box((-30, -30, -10), (230, 30, 0)).fuse(
+            cylinder((0, 0, 0), 5, 20)).fuse(cylinder((200, 0, 0), 5, 20)))
+
+    def part(self, name, shape):
+        part = self.document.addObject("App::Part", name)
+        solid = self.document.addObject("Part::Feature", name + "-solid")
+        solid.Shape = shape.removeSplitter()
+        part.addObject(solid)
+        self.folder.addObject(part)
+        return part
+
+    def lever_shape(self):
+        return box((-10, -10, 0), (80, 10, 20)).cut(cylinder((0, 0, 0), 5, 20))
+
+    def instance(self, shown, label, placement):
+        link = self.document.addObject("App::Link", "Instance")
+        link.LinkedObject = shown
+        link.Label = label
+        link.Placement = placement
+        self.folder.addObject(link)
+        return link
+
+    def check(self):
+        self.document.recompute()
+        self.report = command.export(self.document, self.file)
+        self.assertIn(self.base, self.folder.Group)
+        check = command.check(self.file)
+        self.assertTrue(check["assembled"])
+        self.assertEqual(check["mobility"], 2)
+        self.assertEqual([joint["type"] for joint in check["joints"]], ["revolute"] * 2)
+        volume = 90 * 20 * 20 - math.pi * 25 * 20
+        for link in check["links"]:
+            if link["name"] != "base":
+                self.assertAlmostEqual(link["mass"] / (STEEL * 1e-9 * volume), 1,
+                                       delta=MASS_TOLERANCE)
+        return sorted(link["name"] for link in check["links"])
+
+    def test_instances_of_a_part_in_a_folder_of_an_assembly_are_links(self):
+        lever = self.part("lever", self.lever_shape())
+        self.instance(lever, "Hebel groß", Placement(Vector(200, 0, 0), Rotation(Z, 100)))
+        self.assertEqual(self.check(), ["Hebel groß", "base", "lever"])
+        self.assertEqual([root.Label for root in marks.roots(self.document)], ["Assembly"])
+
+    def test_instances_of_a_solid_can_be_marked(self):
+        solid = self.document.addObject("Part::Feature", "drawing")
+        solid.Shape = self.lever_shape()
+        for name, x in (("left", 0), ("right", 200)):
+            lever = self.instance(solid, name, Placement(Vector(x, 0, 0), Rotation(Z, 50)))
+            self.document.recompute()
+            top = self.edge(lever, Vector(x, 0, 20))
+            marks.mark_anchor(lever, top, name)
+            marks.mark_anchor(self.base.Group[0], self.edge(self.base.Group[0],
+                                                             Vector(x, 0, 20)), name)
+        self.assertEqual(self.check(), ["base", "left", "right"])
+        self.assertNotIn("by its geometry", self.report)
+
+    def edge(self, thing, center):
+        for i, edge in enumerate(Part.getShape(thing).Edges, start=1):
+            if isinstance(edge.Curve, Part.Circle) and (edge.Curve.Center - center).Length < 1e-6:
+                return f"Edge{i}"
+        raise AssertionError("no such circle")
+
+    def test_poses_of_links_in_an_assembly_are_those_of_the_world(self):
+        lever = self.part("lever", self.lever_shape())
+        world = Placement(Vector(1, 2, 3), Rotation(Z, 77))
+        marks.place(lever, world)
+        self.assertLess((lever.getGlobalPlacement().Base - world.Base).Length, 1e-9)
+        self.assertTrue(lever.getGlobalPlacement().Rotation.isSame(world.Rotation, 1e-9))
+
+
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1])

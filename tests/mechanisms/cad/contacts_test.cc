@@ -118,6 +118,112 @@ TEST(Contacts, SeatIsTheShaftWithTheBoresAroundIt) {
   EXPECT_NEAR(seat.positions[1], 0.008, kRoundoff);
 }
 
+TEST(Contacts, AGapOfExactlyTheToleranceIsInContactHoweverItIsRounded) {
+  // 0.1 mm as it comes out of sums and products of millimetres.
+  for (const double gap : {1e-4, 0.0301 - 0.03, 0.1 * 1e-3, 1.0001 - 1, 0.5 - 0.4999}) {
+    EXPECT_TRUE(ProposeJoint({Plane({0, 0, 0}, kZ)}, {Plane({0, 0, gap}, -kZ)})) << gap;
+    EXPECT_TRUE(ProposeJoint({Shaft({0, 0, 0}, kZ)}, {Bore({gap, 0, 0}, kZ)})) << gap;
+    EXPECT_TRUE(ProposeJoint({Shaft({0, 0, 0}, kZ, 0.003)}, {Bore({0, 0, 0}, kZ, 0.003 + gap)}));
+    EXPECT_FALSE(ProposeJoint({Plane({0, 0, 0}, kZ)}, {Plane({0, 0, gap + 1e-8}, -kZ)})) << gap;
+  }
+}
+
+/// A shaft with shoulders around a bore of 20 mm length, `play` at either end.
+WorldFeatures Spool(double play) {
+  return {Shaft({0, 0, 0}, kZ), Plane({0, 0, 0.01 + play}, -kZ), Plane({0, 0, -0.01 - play}, kZ)};
+}
+
+TEST(Contacts, AShaftWithEndPlayBetweenShouldersIsRevolute) {
+  const WorldFeatures ring{Bore({0, 0, 0}, kZ), Plane({0, 0, 0.01}, kZ), Plane({0, 0, -0.01}, -kZ)};
+  EXPECT_EQ(ProposeJoint(Spool(0.0009), ring)->type, JointType::kRevolute);
+  EXPECT_EQ(ProposeJoint(ring, Spool(0.0009))->type, JointType::kRevolute);
+  EXPECT_EQ(ProposeJoint(Spool(0.0011), ring)->type, JointType::kCylindrical)
+      << "more than a tenth";
+  WorldFeatures open = Spool(0.0009);
+  open.pop_back();
+  EXPECT_EQ(ProposeJoint(open, ring)->type, JointType::kCylindrical) << "it can be drawn out";
+}
+
+TEST(Contacts, TwoFitsOfOneAxisThatAreALittleOffStillTurn) {
+  const Vector3d tilted = Vector3d(5e-4, 0, 1).normalized();
+  const WorldFeatures door{Bore({0, 0, 0}, kZ), Bore({0.00008, 0, 0.5}, kZ)};
+  const WorldFeatures post{Shaft({0, 0, 0}, kZ), Shaft({0.00008, 0, 0.5}, tilted),
+                           Plane({0, 0, 0.01}, tilted)};
+  const auto joint = ProposeJoint({door[0], door[1], Plane({0, 0, 0.01}, -kZ)}, post);
+  ASSERT_TRUE(joint);
+  EXPECT_EQ(joint->type, JointType::kRevolute);
+  EXPECT_EQ(ProposeJoint(door, {post[0], post[1]})->type, JointType::kCylindrical);
+}
+
+TEST(Contacts, ADoorDrawnAtItsStopIsAHingeAndAKeyedHubIsNot) {
+  const WorldFeatures post{Shaft({0, 0, 0}, kZ), Plane({0, 0, 0.01}, kZ),
+                           Plane({0.2, 0, 0}, kY, 0.05)};
+  const WorldFeatures door{Bore({0, 0, 0}, kZ), Plane({0, 0, 0.01}, -kZ),
+                           Plane({0.2, 0, 0}, -kY, 0.05)};
+  EXPECT_EQ(ProposeJoint(post, door)->type, JointType::kRevolute);
+  const WorldFeatures key{Shaft({0, 0, 0}, kZ), Plane({0, 0, 0.01}, kZ),
+                          Plane({0, 0.008, 0}, kY, 0.004)};
+  const WorldFeatures hub{Bore({0, 0, 0}, kZ), Plane({0, 0, 0.01}, -kZ),
+                          Plane({0, 0.008, 0}, -kY, 0.004)};
+  EXPECT_EQ(ProposeJoint(key, hub)->type, JointType::kWeld) << "its flat reaches past the axis";
+}
+
+WorldFeatures OfFastener(WorldFeatures features) {
+  for (CadFeature& feature : features) feature.fastens = true;
+  return features;
+}
+
+TEST(Contacts, ScrewsSitInClearanceHolesAndInCoreHoles) {
+  const WorldFeatures screw{Shaft({0, 0, 0}, kZ, 0.002)};
+  for (const double hole : {0.00225, 0.0016}) {
+    const WorldFeatures plate{Bore({0, 0, 0}, kZ, hole)};
+    EXPECT_FALSE(ProposeJoint(screw, plate)) << hole;
+    const auto joint = ProposeJoint(OfFastener(screw), plate);
+    ASSERT_TRUE(joint) << hole;
+    EXPECT_TRUE(joint->fastened);
+  }
+  EXPECT_FALSE(ProposeJoint(OfFastener(screw), {Bore({0, 0, 0}, kZ, 0.003)}));
+}
+
+TEST(Contacts, WhatMissesByALittleIsToldWithItsGap) {
+  const WorldFeatures shaft{Shaft({0, 0, 0}, kZ)};
+  const auto miss = [&](const CadFeature& bore) {
+    const std::vector<std::string> misses = FindNearMisses({bore}, shaft);
+    return misses.empty() ? "none" : misses.front();
+  };
+  EXPECT_EQ(miss(Bore({0.00012, 0, 0}, kZ)),
+            "shaft of 20 mm and bore of 20 mm: axes 0.12 mm apart, 0.1 mm allowed");
+  EXPECT_EQ(miss(Bore({0, 0, 0}, kZ, 0.0105)),
+            "shaft of 20 mm and bore of 21 mm: play of 0.5 mm on the radius, 0.21 mm allowed");
+  EXPECT_EQ(miss(Bore({0, 0, 0}, Vector3d(0.002, 0, 1).normalized())),
+            "shaft of 20 mm and bore of 20 mm: axes 0.115 deg off parallel, 0.0573 deg allowed");
+  EXPECT_EQ(miss(Bore({0.0001, 0, 0}, kZ)), "none") << "it fits";
+  EXPECT_EQ(miss(Bore({0.001, 0, 0}, kZ)), "none") << "a neighbour";
+  EXPECT_EQ(miss(Bore({0.00012, 0, 0.05}, kZ)), "none") << "above";
+}
+
+TEST(Contacts, AFitIsCalledByItsNominalDiameter) {
+  struct Fit {
+    double shaft, bore, nominal;  // [mm]
+  };
+  for (const Fit& fit :
+       {Fit{9.98, 10, 10}, Fit{9.98, 10.02, 10}, Fit{10, 10.05, 10}, Fit{9.96, 9.99, 10},
+        Fit{20.009, 20.01, 20}, Fit{9.98, 0, 10}, Fit{20.015, 0, 20}, Fit{6.35, 6.4, 6.4},
+        Fit{19.03, 19.05, 19.05}, Fit{19.05, 19.05, 19.05}, Fit{6.35, 0, 6.35}, Fit{17, 17, 17}}) {
+    EXPECT_NEAR(NominalDiameter(1e-3 * fit.shaft, 1e-3 * fit.bore), 1e-3 * fit.nominal, kRoundoff)
+        << fit.shaft << " in " << fit.bore;
+  }
+}
+
+TEST(Contacts, SeatOfAPinWithPlayHasTheNominalDiameterOfTheFit) {
+  const JointSeat seat = FindSeat({Bore({0, 0, 0}, kZ, 0.005)}, {Shaft({0, 0, 0}, kZ, 0.00499)},
+                                  {Matrix3d::Identity(), {0, 0, 0}});
+  EXPECT_NEAR(seat.shaft_diameter, 0.00998, kRoundoff);
+  EXPECT_NEAR(seat.bore_diameter, 0.010, kRoundoff);
+  EXPECT_NEAR(seat.nominal_diameter, 0.010, kRoundoff);
+  EXPECT_EQ(seat.housing_diameter, 0);
+}
+
 TEST(Contacts, OptionsOutOfRangeAreRefused) {
   ContactOptions options;
   options.tolerance = 0;

@@ -66,6 +66,18 @@ std::string WithPlacement(const std::string& text, const std::string& entity) {
   return text.substr(0, begin) + entity + text.substr(text.find(';', begin));
 }
 
+/// The text of a file of one block, the first occurrence of something in it replaced.
+void WriteChanged(const Path& file, const std::string& what, const std::string& with) {
+  StepWriter step;
+  step.AddPart(step.root(), "frame", Box({0, 0, 0}, {100, 10, 10}));
+  step.AddPart(step.root(), "block", Box({0, 20, 0}, {5, 25, 5}));
+  step.Write(file);
+  std::string text = ReadTextFile(file);
+  const size_t at = text.rfind(what);
+  ASSERT_NE(at, std::string::npos) << what;
+  WriteText(file, text.replace(at, what.size(), with));
+}
+
 /// Shapes that share the edges where they meet.
 TopoDS_Shape Glue(const TopoDS_Shape& a, const TopoDS_Shape& b) {
   BRepAlgoAPI_BuilderAlgo glue;
@@ -177,6 +189,54 @@ std::vector<Hostile> Files() {
          WriteWithPart(file, Box({0, 20, 0}, {0.001, 20.001, 0.001}));
        },
        "part 'bad' has a volume of 1e-09 mm^3"},
+      {"zeros_in_the_data",
+       [](const Path& file) { WriteChanged(file, "(5.,25.,5.)", std::string("(5\0,25.,5.)", 12)); },
+       "is damaged: there is a zero byte (line "},
+      {"cut_off_within_a_text",
+       [](const Path& file) {
+         const std::string text = SampleText(file);
+         WriteText(file, text.substr(0, text.find("'crank'") + 3) + "\nEND-ISO-10303-21;\n");
+       },
+       "is damaged: it refers to #"},
+      {"point_at_infinity",
+       [](const Path& file) { WriteChanged(file, "(5.,25.,5.)", "(1.E+999,25.,5.)"); },
+       "is damaged: 1.E+999 is beyond the range of numbers (line "},
+      {"exponent_beyond_all_integers",
+       [](const Path& file) { WriteChanged(file, "(5.,25.,5.)", "(1.E99999999999,25.,5.)"); },
+       "is damaged: 1.E99999999999 is beyond the range of numbers (line "},
+      {"defined_twice",
+       [](const Path& file) {
+         WriteChanged(file, "ENDSEC;", "#10=DIRECTION('',(0.,0.,1.));\nENDSEC;");
+       },
+       "is damaged: it defines #10 a second time (line "},
+      {"axes_of_no_length",
+       [](const Path& file) {
+         WriteChanged(file, "DIRECTION('',(0.,0.,1.))", "DIRECTION('',(0.,0.,0.))");
+       },
+       "part 'block' has "},
+      {"cylinder_of_negative_radius",
+       [](const Path& file) {
+         std::string text = SampleText(file);
+         const size_t at = text.find(",8.5)");
+         WriteText(file, text.replace(at, 5, ",-8.5)"));
+       },
+       "has solids that cannot be built (#"},
+      {"length_in_grams",
+       [](const Path& file) {
+         WriteChanged(file, "SI_UNIT(.MILLI.,.METRE.)", "SI_UNIT(.MILLI.,.GRAM.)");
+       },
+       "gives lengths in a unit that is no length (#"},
+      {"no_data",
+       [](const Path& file) {
+         WriteText(file, "ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n");
+       },
+       "cannot be understood"},
+      {"assembly_within_itself",
+       [](const Path& file) {
+         WriteChanged(file, "ENDSEC;",
+                      "#900000=NEXT_ASSEMBLY_USAGE_OCCURRENCE('9','again','',#5,#5,$);\nENDSEC;");
+       },
+       "has no shapes that can be read"},
       {"nothing_joined",
        [](const Path& file) {
          WriteWithPart(file, Box({0, 20, 0}, {5, 25, 5}));
