@@ -80,11 +80,13 @@ void MechanismBuilder::AddGrasp(std::string_view name, int link, const Posed& X_
   imported_.mechanism.grasps.push_back({FitName(name, &grasps_), link, X_LG, GraspKind::kRigid});
 }
 
-void MechanismBuilder::NoteMended(const Place& place, const std::string& what) {
+void MechanismBuilder::NoteMended(const Place& place, const std::string& defect,
+                                  const std::string& change) {
   if (options_.strict) {
-    refusals_.push_back({place.file, place.line, 1, "", what + "; refused by --strict"});
+    refusals_.push_back(
+        {place.file, place.line, 1, "", fmt::format("{} (without --strict: {})", defect, change)});
   } else {
-    Note(fmt::format("{} ({}:{})", what, place.file, place.line));
+    Note(fmt::format("{}; {} ({}:{})", defect, change, place.file, place.line));
   }
 }
 
@@ -92,9 +94,9 @@ void MechanismBuilder::SetLimits(const Place& place, double lower, double upper,
                                  Joint* joint) {
   const std::string what = fmt::format("joint '{}'", joint->name);
   if (lower == upper) {
-    return NoteMended(place, fmt::format("{}: its limits are both {:.6g} and would hold it: left "
-                                         "out",
-                                         what, lower));
+    return NoteMended(place,
+                      fmt::format("{}: its limits are both {:.6g} and would hold it", what, lower),
+                      "they are left out");
   }
   if (!(lower < upper)) {
     throw FileErrors({{place.file, place.line, 1, "",
@@ -138,14 +140,15 @@ void MechanismBuilder::MendInertias() {
   Mechanism& mechanism = imported_.mechanism;
   for (size_t i = 0; i < mechanism.links.size(); ++i) {
     Link& link = mechanism.links[i];
-    const std::string mended = MendInertia(&link.mass_properties);
-    if (mended.empty()) continue;
+    const Mending mending = MendInertia(&link.mass_properties);
+    if (mending.defect.empty()) continue;
     if (static_cast<int>(i) == mechanism.ground) {
       link.mass_properties.I_Lcm = Matrix3d::Zero();
       Note(fmt::format("link '{}' is the ground: its inertia is dropped ({}:{})", link.name,
                        places_[i].file, places_[i].line));
     } else {
-      NoteMended(places_[i], fmt::format("link '{}': {}", link.name, mended));
+      NoteMended(places_[i], fmt::format("link '{}': {}", link.name, mending.defect),
+                 mending.change);
     }
   }
   if (!refusals_.empty()) throw FileErrors(refusals_);

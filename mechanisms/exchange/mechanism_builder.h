@@ -34,8 +34,8 @@ class MechanismBuilder {
                   const Posed& X_LM);
   void AddGrasp(std::string_view name, int link, const Posed& X_LG);
   void Note(std::string note) { imported_.notes.push_back(std::move(note)); }
-  /// Says what was mended; with ImportOptions::strict Finish refuses it.
-  void NoteMended(const Place& place, const std::string& what);
+  /// Says what was wrong and what was done about it; with ImportOptions::strict Finish refuses it.
+  void NoteMended(const Place& place, const std::string& defect, const std::string& change);
   /// Limits of a freedom, infinite where there is none. The start becomes the place between them
   /// that is nearest to zero, with a note if it is another. Limits that would hold the joint are
   /// left out, as mended: programs write them that know none. @throws FileErrors if lower > upper

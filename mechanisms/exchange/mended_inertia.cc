@@ -25,18 +25,18 @@ Matrix3d NearestInertia(const Matrix3d& I_cm) {
   return nearest.trace() * Matrix3d::Identity() - nearest;
 }
 
-std::string MendInertia(MassProperties* properties) {
+Mending MendInertia(MassProperties* properties) {
   Matrix3d& I = properties->I_Lcm;
   if (I == Matrix3d::Zero()) return {};
   if (properties->mass == 0) {
     const std::string before = Figures(I);
     I = Matrix3d::Zero();
-    return fmt::format("no mass, but principal moments of inertia {}: they are dropped", before);
+    return {"no mass, but principal moments of inertia " + before, "they are dropped"};
   }
   const std::string defect = InertiaDefect(I, I.cwiseAbs().maxCoeff());
   if (defect.empty()) return {};
   I = NearestInertia(I);
-  return fmt::format("{}; mended by the least change to {}", defect, Figures(I));
+  return {defect, "mended by the least change to " + Figures(I)};
 }
 
 }  // namespace vmech

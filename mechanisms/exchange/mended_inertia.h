@@ -16,10 +16,15 @@ namespace vmech {
 /// eigenvectors of the given one and its eigenvalues, those below zero put to zero.
 Matrix3d NearestInertia(const Matrix3d& I_cm);
 
-/// Mends what no body has, by as little as can be, and says so with the figures before and after:
-/// an inertia beyond rounding (InertiaDefect) becomes the nearest, and one without mass is dropped.
-/// The judgement is about the centre of gravity, wherever the frame of the link is. Empty if there
-/// is nothing to mend.
-std::string MendInertia(MassProperties* properties);
+/// What was wrong and what was done about it, in words with the figures before and after; empty if
+/// there was nothing to mend.
+struct Mending {
+  std::string defect, change;
+};
+
+/// Mends what no body has by as little as can be: an inertia that is wrong beyond rounding
+/// (InertiaDefect) becomes the nearest, and one without mass is dropped. The judgement is about the
+/// centre of gravity, wherever the frame of the link is.
+Mending MendInertia(MassProperties* properties);
 
 }  // namespace vmech

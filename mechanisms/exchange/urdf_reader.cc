@@ -55,10 +55,10 @@ class Reader {
     Joint& added = builder_.AddJoint(joint.name, type, indices_.at(joint.parent), joint.X_PC * X_CJ,
                                      indices_.at(joint.child), X_CJ);
     if (joint.type == UrdfJointType::kFloating) {
-      builder_.NoteMended({file_, joint.line},
-                          fmt::format("joint '{}' floats, and nothing that holds it is told: link "
-                                      "'{}' is welded to '{}' where it is drawn",
-                                      joint.name, joint.child, joint.parent));
+      builder_.NoteMended(
+          {file_, joint.line},
+          fmt::format("joint '{}' floats, and nothing that holds it is told", joint.name),
+          fmt::format("link '{}' is welded to '{}' where it is drawn", joint.child, joint.parent));
     }
     if (!joint.mimics.empty()) {
       builder_.Note(

@@ -104,8 +104,8 @@ class Parser {
                   std::string_view what) {
     const std::string* text = element.Attribute(key);
     if (text == nullptr) return fallback;
-    const std::vector<double> numbers =
-        errors_.Numbers(*text, 3, element.line, fmt::format("'{}' of {}", key, what));
+    const std::vector<double> numbers = errors_.Numbers(
+        *text, 3, element.line, fmt::format("'{}' of <{}> of {}", key, element.name, what));
     return {numbers[0], numbers[1], numbers[2]};
   }
 
@@ -115,8 +115,8 @@ class Parser {
       if (origin.Attribute("rpy") != nullptr) {
         errors_.Add(origin.line, fmt::format("the origin of {} has 'rpy' and 'quat_xyzw'", what));
       }
-      const std::vector<double> q =
-          errors_.Numbers(*quaternion, 4, origin.line, fmt::format("'quat_xyzw' of {}", what));
+      const std::vector<double> q = errors_.Numbers(
+          *quaternion, 4, origin.line, fmt::format("'quat_xyzw' of <origin> of {}", what));
       const Eigen::Quaterniond rotation(q[3], q[0], q[1], q[2]);
       if (rotation.norm() > 0) return rotation.normalized().toRotationMatrix();
       errors_.Add(origin.line, fmt::format("'quat_xyzw' of {} has no length", what));
@@ -235,7 +235,7 @@ class Parser {
     const XmlElement* axis = OnlyChild(element, "axis", &errors_);
     if (axis == nullptr) return;
     const size_t before = errors_.size();
-    joint->axis = Vector(*axis, "xyz", Vector3d::UnitX(), "the axis of " + what);
+    joint->axis = Vector(*axis, "xyz", Vector3d::UnitX(), what);
     const bool moves =
         joint->type != UrdfJointType::kFixed && joint->type != UrdfJointType::kFloating;
     if (moves && joint->axis == Vector3d::Zero() && errors_.size() == before) {

@@ -292,7 +292,8 @@ double XmlErrors::Number(const XmlElement& element, std::string_view key, double
                          std::string_view what) {
   const std::string* text = element.Attribute(key);
   if (text == nullptr) return fallback;
-  return Numbers(*text, 1, element.line, fmt::format("'{}' of {}", key, what))[0];
+  return Numbers(*text, 1, element.line,
+                 fmt::format("'{}' of <{}> of {}", key, element.name, what))[0];
 }
 
 const XmlElement* OnlyChild(const XmlElement& element, std::string_view name, XmlErrors* errors) {

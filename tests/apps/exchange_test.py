@@ -161,8 +161,8 @@ class Exchange(unittest.TestCase):
             with self.subTest(figure=figure):
                 self.write("mass.urdf", LEVER.replace('mass value="2"', f'mass value="{figure}"'))
                 error = self.refuse(2, "import", "mass.urdf", "--out", "x.yaml")
-                self.assertIn(f"mass.urdf:4:1: 'value' of link 'bar': '{figure}' is not a finite",
-                              error)
+                self.assertIn("mass.urdf:4:1: 'value' of <mass> of link 'bar': "
+                              f"'{figure}' is not a finite", error)
 
     def test_links_that_go_round_in_a_circle_are_refused_by_name(self):
         self.write("cycle.urdf", URDF.replace('<parent link="base"/><child link="left"/>',

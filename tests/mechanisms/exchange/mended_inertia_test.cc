@@ -65,17 +65,18 @@ TEST(NearestInertia, HasNoBodyNearer) {
 
 TEST(MendInertia, SaysTheFiguresBeforeAndAfter) {
   MassProperties bar{2, {0.5, 0, 0}, Vector3d(0.001, 0.002, 0.0035).asDiagonal()};
-  EXPECT_EQ(MendInertia(&bar),
+  const Mending mending = MendInertia(&bar);
+  EXPECT_EQ(mending.defect,
             "the largest moment of inertia exceeds the sum of the two others: principal moments "
-            "0.001, 0.002, 0.0035 kg m^2 about the centre of gravity; mended by the least change "
-            "to [0.00125, 0.00225, 0.0035] kg m^2");
-  EXPECT_EQ(MendInertia(&bar), "");
+            "0.001, 0.002, 0.0035 kg m^2 about the centre of gravity");
+  EXPECT_EQ(mending.change, "mended by the least change to [0.00125, 0.00225, 0.0035] kg m^2");
+  EXPECT_EQ(MendInertia(&bar).defect, "");
 }
 
 TEST(MendInertia, DropsThatWithoutMass) {
   MassProperties base{0, Vector3d::Zero(), 0.1 * Matrix3d::Identity()};
-  EXPECT_EQ(MendInertia(&base),
-            "no mass, but principal moments of inertia [0.1, 0.1, 0.1] kg m^2: they are dropped");
+  EXPECT_EQ(MendInertia(&base).defect,
+            "no mass, but principal moments of inertia [0.1, 0.1, 0.1] kg m^2");
   EXPECT_EQ(base.I_Lcm, Matrix3d::Zero());
 }
 
@@ -83,7 +84,7 @@ TEST(MendInertia, LeavesPointsAndRodsAndRoundedFiguresAlone) {
   for (const Vector3d& moments :
        {Vector3d(0, 0, 0), Vector3d(0, 1, 1), Vector3d(0.0345, 0.0612, 0.0958)}) {
     MassProperties body{1, Vector3d::Zero(), moments.asDiagonal()};
-    EXPECT_EQ(MendInertia(&body), "");
+    EXPECT_EQ(MendInertia(&body).defect, "");
     EXPECT_EQ(body.I_Lcm, Matrix3d(moments.asDiagonal()));
   }
 }

@@ -108,7 +108,7 @@ TEST(Robots, TellWhatWasMended) {
       "at 0.35\n"
       "link 'finger_right' has a mass of 0.01 kg and no inertia: a point (robot.urdf:20)\n"
       "joint 'right' mimics 'left': it moves by itself here\n"
-      "joint 'right': its limits are both 0 and would hold it: left out (robot.urdf:34)\n"
+      "joint 'right': its limits are both 0 and would hold it; they are left out (robot.urdf:34)\n"
       "left out: 4 'effort' of <limit>, 4 'velocity' of <limit>, 1 <collision>, 1 <gazebo>, "
       "1 <material>, 1 <safety_controller>, 1 <transmission>, 1 <visual>\n"
       "URDF has no gravity: 9.81 m/s^2 along -z\n"
@@ -116,7 +116,7 @@ TEST(Robots, TellWhatWasMended) {
       "link 'wrist': the largest moment of inertia exceeds the sum of the two others: principal "
       "moments 1e-06, 2e-06, 5e-06 kg m^2 about the centre of gravity; mended by the least change "
       "to [2e-06, 3e-06, 5e-06] kg m^2 (robot.urdf:15)\n"
-      "link 'cable': no mass, but principal moments of inertia [0.001, 0.001, 0.001] kg m^2: they "
+      "link 'cable': no mass, but principal moments of inertia [0.001, 0.001, 0.001] kg m^2; they "
       "are dropped (robot.urdf:24)\n");
 }
 
@@ -169,7 +169,7 @@ TEST(Robots, ThatFloatAreHeldWhereTheyAreDrawn) {
   const ImportedMechanism imported = ReadText(kVehicle);
   EXPECT_EQ(JointOf(imported.mechanism, "free").type, JointType::kWeld);
   EXPECT_EQ(TotalMass(imported.mechanism), 4);
-  EXPECT_NE(NotesOf(imported).find("joint 'free' floats, and nothing that holds it is told: link "
+  EXPECT_NE(NotesOf(imported).find("joint 'free' floats, and nothing that holds it is told; link "
                                    "'hull' is welded to 'world' where it is drawn"),
             std::string::npos);
   EXPECT_THROW(ReadText(kVehicle, {.ground = "", .gravity_W = {}, .model = "", .strict = true}),
