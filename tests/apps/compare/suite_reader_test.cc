@@ -141,7 +141,7 @@ TEST(SuiteReader, RefusesWhatIsMalformedWithPlaceAndRemedy) {
       {"count: 7", "count: .nan",
        "suite.yaml:9:34: targets.near.count: expected a finite number, not '.nan'"},
       {"count: 7", "count: 600000",
-       "suite.yaml:8:1: targets: 1200008 problems (the sum of the counts over all mechanisms) are "
+       "suite.yaml:8:1: targets: 1200007 problems (the sum of the counts over all mechanisms) are "
        "more than 1000000; lower them, or make several suites"},
       {"count: 2, steps: 30", "count: 20000, steps: 30000",
        "suite.yaml:8:1: targets: 1200000000 targets on paths (the sum of the counts times steps) "
@@ -153,7 +153,7 @@ TEST(SuiteReader, RefusesWhatIsMalformedWithPlaceAndRemedy) {
       {"offset: 0.2", "offset: -0.2",
        "suite.yaml:10:59: targets.off.offset: must be from 1e-09 to 100, but is -0.2"},
       {"step: 0.01", "step: 1e-12",
-       "suite.yaml:11:52: targets.path.step: must be from 1e-06 to 1, but is 1e-12"},
+       "suite.yaml:11:53: targets.path.step: must be from 1e-06 to 1, but is 1e-12"},
       {"steps: 30", "steps: 1",
        "suite.yaml:11:43: targets.path.steps: must be a whole number from 2 to 100000, not 1"},
       {"reach_tolerance: 1e-5", "reach_tolerance: 0",
