@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <stdexcept>
 #include <string>
@@ -316,7 +317,8 @@ int RunCommand(const CLI::App& app, const Arguments& arguments) {
 int Refuse(const CLI::App& app, const CLI::ParseError& error,
            const std::vector<std::string>& words) {
   const bool asked = error.get_exit_code() == 0;
-  const std::string suggestion = asked ? "" : vmech::Suggestion(app, words);
+  const auto named = words.begin() + (asked ? std::min<ptrdiff_t>(1, words.size()) : words.size());
+  const std::string suggestion = vmech::Suggestion(app, {words.begin(), named});
   if (suggestion.empty()) return app.exit(error) == 0 ? vmech::kSuccess : vmech::kBadUsage;
   fmt::print(stderr, "vmech: {}\nRun with --help for more information.\n", suggestion);
   return vmech::kBadUsage;
@@ -344,7 +346,7 @@ int Run(const std::vector<std::string>& words) {
 std::vector<std::string> WithoutHelpCommand(std::vector<std::string> words) {
   if (words.empty() || words[0] != "help") return words;
   if (words.size() == 1) return {"--help"};
-  if (words[1][0] == '-') return {"--help"};
+  if (words[1] == "help" || words[1][0] == '-') return {"--help"};
   return {words[1], "--help"};
 }
 

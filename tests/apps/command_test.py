@@ -111,7 +111,7 @@ class Help(unittest.TestCase):
         self.assertRegex(vmech("--version").stdout, r"^vmech \d+\.\d+\.\d+\n$")
 
     def test_wrong_command_lines_are_code_1_on_standard_error(self):
-        for arguments in ((), ("chekc",), ("check",), ("loads",), ("check", "a", "b"),
+        for arguments in ((), ("chekc",), ("check",), ("loads",), ("loads", "a", "b"),
                           ("ik", "four-bar.yaml"), ("loads", "s.yaml", "--threads", "65"),
                           ("loads", "s.yaml", "--outt")):
             with self.subTest(arguments=arguments):

@@ -303,7 +303,7 @@ class Reports(InFolder):
         self.write("heavy.yaml", text.replace("rpm: 1500", "rpm: 15000"))
         result = self.vmech("loads", "heavy.yaml", "--out", "out")
         page = (self.folder / "out" / "report.html").read_text(encoding="utf-8")
-        largest = re.search(r"(?m)^  main +(\S+)", result.stdout).group(1)
+        largest = re.search("(?m)^  main +([0-9\u202f]+)", result.stdout).group(1)
         self.assertIn("\u202f", largest)  # thousands are apart
         self.assertIn(f">{largest}<", page)
 
