@@ -71,7 +71,9 @@ void Print(const ImportedFile& imported, const MechanismCheck& check, const Outp
     fmt::print("mobility    {}\n", check.mobility.mobility);
     for (const std::string& note : check.assembled.Notes()) fmt::print("note        {}\n", note);
   }
-  for (const std::string& doubt : check.doubts) fmt::print("warning     {}\n", doubt);
+  for (const auto* doubts : {&imported.doubts, &check.doubts}) {
+    for (const std::string& doubt : *doubts) fmt::print("warning     {}\n", doubt);
+  }
   fmt::print("written to {}\n", outputs.names());
 }
 
@@ -86,8 +88,16 @@ void RequireOptionsFit(const ImportArguments& arguments) {
   refuse(!arguments.loops.empty(), urdf, "--loops is for URDF, which has no loops of its own");
   refuse(!arguments.grasps.empty(), sdf || urdf,
          "--grasp is for SDFormat and URDF; in CAD a coordinate system grasp_NAME makes a grasp");
-  refuse(arguments.strict, sdf || urdf,
-         "--strict is for SDFormat and URDF, whose inertias are written, not computed");
+}
+
+/// @throws FileErrors with every doubt.
+void RequireNoDoubt(const fs::path& file, const ImportedFile& imported,
+                    const MechanismCheck& check) {
+  std::vector<FileError> errors;
+  for (const auto* doubts : {&imported.doubts, &check.doubts}) {
+    for (const std::string& doubt : *doubts) errors.push_back({file.string(), 0, 0, "", doubt});
+  }
+  if (!errors.empty()) throw FileErrors(errors);
 }
 
 /// What is read and what is written, one file each.
@@ -113,6 +123,7 @@ int RunImport(ImportArguments arguments) {
   const ImportedFile imported = door.read(arguments);
   const std::string text = MechanismText(imported, arguments);
   const MechanismCheck check = CheckMechanism(ParseMechanism(text, arguments.out.string()));
+  if (arguments.strict) RequireNoDoubt(arguments.file, imported, check);
 
   Outputs outputs;
   outputs.Write(arguments.out, text);

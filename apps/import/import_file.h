@@ -29,7 +29,7 @@ struct ImportArguments {
   bool quiet = false;
   std::string model;                ///< SDF: one of several, by name; empty: the only one
   std::vector<std::string> grasps;  ///< links at whose frames there is a grasp; empty: proposed
-  bool strict = false;              ///< SDF, URDF: refuse what would be mended with a note
+  bool strict = false;  ///< refuse what would be mended with a note, and what is doubted
 
   /// @throws std::invalid_argument
   void Validate() const;
@@ -42,6 +42,7 @@ struct ImportedFile {
   std::vector<std::string> guesses;  ///< go to the head of the file, too
   std::string study;                 ///< its text without `vmech_study` and `mechanism`
   std::map<std::string, std::string> meshes;  ///< by link: binary STL
+  std::vector<std::string> doubts;            ///< beside those of the mechanism: densities
 };
 
 /// A kind of file that can be read, by the endings of its name (".urdf").

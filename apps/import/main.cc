@@ -106,8 +106,8 @@ void AddExchangeOptions(CLI::App* app, ImportArguments* arguments) {
       ->allow_extra_args(false)
       ->type_name("LINK");
   app->add_flag("--strict", arguments->strict,
-                "SDFormat, URDF: refuse what would be mended with a note, as an inertia that no "
-                "body has");
+                "refuse what would be mended with a note, as an inertia that no body has, and what "
+                "is doubted with a warning");
 }
 
 void AddOutputs(CLI::App* app, ImportArguments* arguments) {

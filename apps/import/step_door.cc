@@ -1,6 +1,7 @@
 #include "vmech/apps/import/doors.h"
 #include "vmech/apps/import/stl.h"
 #include "vmech/apps/import/study_text.h"
+#include "vmech/mechanisms/plausibility.h"
 
 namespace vmech {
 namespace {
@@ -33,6 +34,13 @@ ImportedFile ImportStep(const ImportArguments& arguments) {
     result.study = StudyText(import, arguments.drives, arguments.rpm, &import.guesses);
   }
   if (!arguments.meshes.empty()) result.meshes = LinkMeshes(assembly, import);
+  for (const ImportedBody& body : import.bodies) {
+    for (const BodyMass::Part& part : body.mass.parts) {
+      for (std::string& doubt : DoubtsOfDensity("part '" + part.name + "'", part.density)) {
+        result.doubts.push_back(std::move(doubt));
+      }
+    }
+  }
   result.report = import.FullReport();
   result.guesses = import.guesses;
   result.mechanism = std::move(import.mechanism);

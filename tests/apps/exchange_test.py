@@ -246,8 +246,7 @@ class Exchange(unittest.TestCase):
         self.write("crank.step", "")
         for arguments, words in ((("bars.urdf", "--model", "m"), "--model is for SDFormat"),
                                  (("crank.step", "--loops", "l.yaml"), "--loops is for URDF"),
-                                 (("crank.step", "--grasp", "crank"), "grasp_NAME"),
-                                 (("crank.step", "--strict"), "--strict is for")):
+                                 (("crank.step", "--grasp", "crank"), "grasp_NAME")):
             with self.subTest(arguments=arguments):
                 self.assertIn(words, self.refuse(2, "import", *arguments, "--out", "x.yaml"))
 

@@ -98,6 +98,13 @@ class Import(unittest.TestCase):
             self.assertEqual(run.returncode, 0, run.stderr)
             self.assertIn(joints, run.stdout)
 
+    def test_a_density_in_grams_per_cubic_centimetre_is_doubted(self):
+        crank = SAMPLES / "slider-crank.step"
+        text = self.run_import(crank, "--density", "7.85").stdout
+        self.assertRegex(text, r"warning +part '.*': its density is 7.85 kg/m\^3")
+        self.assertNotIn("warning", self.run_import(crank, "--density", STEEL).stdout)
+        self.assert_refused("its density is 7.85 kg/m^3", crank, "--density", "7.85", "--strict")
+
     def test_meshes_enclose_what_the_links_weigh(self):
         run = self.run_import(SAMPLES / "four-bar.step", "--meshes", "meshes", "--density", STEEL)
         self.assertEqual(run.returncode, 0, run.stderr)
