@@ -42,7 +42,7 @@ struct ImportedFile {
   std::vector<std::string> guesses;  ///< go to the head of the file, too
   std::string study;                 ///< its text without `vmech_study` and `mechanism`
   std::map<std::string, std::string> meshes;  ///< by link: binary STL
-  std::vector<std::string> doubts;            ///< beside those of the mechanism: densities
+  std::vector<std::string> doubts = {};       ///< beside those of the mechanism: densities
 };
 
 /// A kind of file that can be read, by the endings of its name (".urdf").
