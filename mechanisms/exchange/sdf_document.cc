@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <map>
 #include <numbers>
 #include <optional>
 #include <vector>
@@ -146,13 +145,13 @@ class Collector {
   explicit Collector(const fs::path& path) { Add(path); }
 
   SdfDocument Take() {
-    for (const auto& [name, count] : left_out_) {
-      document_.left_out.push_back(fmt::format("{} <{}>", count, name));
-    }
+    document_.left_out = left_out_.Texts();
     return std::move(document_);
   }
 
  private:
+  static constexpr int kMostIncludes = 10'000;
+
   /// Reads a file and those that it includes, and gives its index.
   int Add(const fs::path& path) {
     const int index = static_cast<int>(document_.files.size());
@@ -174,7 +173,7 @@ class Collector {
     for (const XmlElement& child : element.children) {
       if (child.name == "screw_thread_pitch") RefusePitch(child, owner, errors);
       if (!IsTaken(child, element.name)) {
-        ++left_out_[child.name];
+        left_out_.Add(fmt::format("<{}>", child.name));
         continue;
       }
       CheckValue(child, owner, errors);
@@ -189,7 +188,13 @@ class Collector {
     const std::optional<fs::path> found = Find(*uri, path, errors);
     if (!found) return;
     const int file = Follow(*found, *uri, errors);
-    document_.files[open_.back()].includes.push_back({uri->tag_end, uri->text_end, file});
+    if (file < 0) return;
+    SdfFile& including = document_.files[open_.back()];
+    including.includes.push_back({uri->tag_end, uri->text_end, file});
+    including.expanded += document_.files[file].expanded;
+    if (including.expanded <= kMostIncludes) return;
+    throw FileErrors({{path.string(), uri->line, 1, "",
+                       fmt::format("more than {} files are included in all", kMostIncludes)}});
   }
 
   std::optional<fs::path> Find(const XmlElement& uri, const fs::path& path, XmlErrors* errors) {
@@ -235,7 +240,7 @@ class Collector {
 
   SdfDocument document_;
   std::vector<int> open_;  ///< the files around the one at hand, and that one
-  std::map<std::string, int> left_out_;
+  LeftOut left_out_;
 };
 
 int CountElements(const XmlElement& element, std::string_view name, bool in_worlds) {

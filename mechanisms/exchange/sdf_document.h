@@ -21,6 +21,7 @@ struct SdfFile {
   std::string text;
   XmlElement root;
   std::vector<Include> includes;
+  int expanded = 1;  ///< files that come of it, counted as often as they are included
 };
 
 /// A file, the first, and those that it includes, each once.

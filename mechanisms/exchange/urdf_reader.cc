@@ -27,7 +27,7 @@ JointType TypeOf(UrdfJointType type) {
 class Reader {
  public:
   Reader(const UrdfRobot& robot, std::string file, MechanismBuilder* builder)
-      : robot_(robot), file_(std::move(file)), builder_(*builder) {
+      : file_(std::move(file)), builder_(*builder) {
     const std::vector<int> order = LinksFromRoot(robot, file_);
     const std::vector<int> parent_joints = ParentJoints(robot);
     for (const int link : order) {
@@ -88,7 +88,6 @@ class Reader {
     }
   }
 
-  const UrdfRobot& robot_;
   const std::string file_;
   MechanismBuilder& builder_;
   std::unordered_map<std::string, int> indices_;

@@ -25,9 +25,7 @@ class Parser {
                   fmt::format("<robot> expected, which a URDF begins with, not <{}>", root.name));
     }
     errors_.Throw();
-    for (const auto& [what, count] : left_out_) {
-      robot_.left_out.push_back(fmt::format("{} {}", count, what));
-    }
+    robot_.left_out = left_out_.Texts();
   }
 
   UrdfRobot Take() { return std::move(robot_); }
@@ -58,7 +56,7 @@ class Parser {
                                             "robot.urdf",
                                             element.name, errors_.file()));
     }
-    ++left_out_[fmt::format("<{}>", element.name)];
+    left_out_.Add(fmt::format("<{}>", element.name));
   }
 
   /// Nothing is lost in silence: what is not known is counted.
@@ -70,7 +68,7 @@ class Parser {
       if (!known(children, child.name)) LeaveOut(child);
     }
     for (const auto& [key, value] : element.attributes) {
-      if (!known(attributes, key)) ++left_out_[fmt::format("'{}' of <{}>", key, element.name)];
+      if (!known(attributes, key)) left_out_.Add(fmt::format("'{}' of <{}>", key, element.name));
     }
   }
 
@@ -269,7 +267,7 @@ class Parser {
 
   XmlErrors errors_;
   UrdfRobot robot_;
-  std::map<std::string, int> left_out_;
+  LeftOut left_out_;
 };
 
 }  // namespace

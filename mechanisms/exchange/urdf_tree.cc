@@ -24,6 +24,7 @@ void RequireEnds(const UrdfRobot& robot, const Index& index, XmlErrors* errors) 
   for (const UrdfLink& link : robot.links) names.push_back(link.name);
   std::unordered_map<std::string, const UrdfJoint*> carriers;
   for (const UrdfJoint& joint : robot.joints) {
+    if (errors->full()) return;
     for (const std::string& end : {joint.parent, joint.child}) {
       if (index.contains(end)) continue;
       errors->Add(joint.line, fmt::format("joint {}: there is no link {}{}", Quoted(joint.name),

@@ -172,6 +172,9 @@ class Parser {
     SkipSpace();
     if (AtEnd() || !IsNameCharacter(text_[at_])) return false;
     const std::string name = ReadName("the name of an attribute");
+    if (element->attributes.size() == kMaxXmlAttributes) {
+      Fail(fmt::format("<{}> has more than {} attributes", element->name, kMaxXmlAttributes));
+    }
     if (element->Attribute(name) != nullptr) {
       Fail(fmt::format("<{}> has two attributes '{}'", element->name, name));
     }
@@ -224,9 +227,11 @@ class Parser {
   int line_ = 1, count_ = 0;
 };
 
-std::vector<std::string> Words(std::string_view text) {
+/// The words of a text, or as many of them.
+std::vector<std::string> Words(std::string_view text, size_t most) {
   std::vector<std::string> words;
-  for (size_t begin; (begin = text.find_first_not_of(kSpace)) != text.npos;) {
+  for (size_t begin;
+       (begin = text.find_first_not_of(kSpace)) != text.npos && words.size() < most;) {
     text.remove_prefix(begin);
     const size_t size = std::min(text.find_first_of(kSpace), text.size());
     words.emplace_back(text.substr(0, size));
@@ -262,8 +267,7 @@ XmlElement ParseXml(std::string_view text, const std::string& file) {
 }
 
 void XmlErrors::Add(int line, std::string message) {
-  constexpr size_t kMost = 50;  // to read at once
-  if (errors_.size() < kMost) errors_.push_back({file_, line, 1, "", std::move(message)});
+  if (!full()) errors_.push_back({file_, line, 1, "", std::move(message)});
 }
 
 void XmlErrors::Throw() const {
@@ -272,7 +276,7 @@ void XmlErrors::Throw() const {
 
 std::vector<double> XmlErrors::Numbers(std::string_view text, size_t count, int line,
                                        std::string_view what) {
-  const std::vector<std::string> words = Words(text);
+  const std::vector<std::string> words = Words(text, count + 1);
   std::vector<double> numbers(count, 0.0);
   if (words.size() != count) {
     Add(line, fmt::format("{}: {} is not {}", what, Quoted(text),
@@ -294,6 +298,21 @@ double XmlErrors::Number(const XmlElement& element, std::string_view key, double
   if (text == nullptr) return fallback;
   return Numbers(*text, 1, element.line,
                  fmt::format("'{}' of <{}> of {}", key, element.name, what))[0];
+}
+
+std::vector<std::string> LeftOut::Texts() const {
+  constexpr size_t kMostKinds = 20;
+  constexpr size_t kLongest = 60;  // bytes of a name
+  std::vector<std::string> texts;
+  for (const auto& [what, count] : counts_) {
+    if (texts.size() == kMostKinds) {
+      texts.push_back(fmt::format("{} more kinds", counts_.size() - kMostKinds));
+      break;
+    }
+    const bool is_long = what.size() > kLongest;
+    texts.push_back(fmt::format("{} {}", count, is_long ? Quoted(what) : what));
+  }
+  return texts;
 }
 
 const XmlElement* OnlyChild(const XmlElement& element, std::string_view name, XmlErrors* errors) {

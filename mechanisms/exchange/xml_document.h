@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -24,7 +25,8 @@ struct XmlElement {
   const std::string* Attribute(std::string_view key) const;
 };
 
-constexpr int kMaxXmlElements = 500'000;  ///< in a file
+constexpr int kMaxXmlElements = 500'000;   ///< in a file
+constexpr size_t kMaxXmlAttributes = 100;  ///< of an element
 
 /// The root of an XML 1.0 text in UTF-8. Comments and processing instructions are passed over.
 /// Declarations (<!DOCTYPE>, <!ENTITY>) are refused: no format that is read here needs entities of
@@ -43,6 +45,8 @@ class XmlErrors {
   void Throw() const;
   const std::string& file() const { return file_; }
   size_t size() const { return errors_.size(); }
+  /// There is as much as can be read at once; more is not kept.
+  bool full() const { return errors_.size() >= kMost; }
 
   /// As many numbers as are asked for, from an attribute or the text of an element. `what` names
   /// the value in messages. Not finite, beyond kMaxNumber, not a number, too few or too many is
@@ -53,8 +57,20 @@ class XmlErrors {
                 std::string_view what);
 
  private:
+  static constexpr size_t kMost = 50;
   std::string file_;
   std::vector<FileError> errors_;
+};
+
+/// Counts what is left out of a file, so that nothing is lost in silence.
+class LeftOut {
+ public:
+  void Add(const std::string& what) { ++counts_[what]; }
+  /// "3 <visual>", in the order of the alphabet; what is too much to read is summed up.
+  std::vector<std::string> Texts() const;
+
+ private:
+  std::map<std::string, int> counts_;
 };
 
 /// The child of this name; null if there is none. Two are an error.

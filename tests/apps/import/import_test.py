@@ -137,7 +137,7 @@ class Import(unittest.TestCase):
         drawing = self.folder / "drawing.dwg"
         shutil.copy(sample, drawing)
         self.assert_refused("half.step: is cut off", half)
-        self.assert_refused("'.dwg' is none of: .step", drawing)
+        self.assert_refused("a drawing: save STEP from the program that made it", drawing)
         self.assert_refused("neither a density in kg/m^3 nor one of the materials: steel",
                             sample, "--density", "steal")
         self.assert_refused("is not in 1e-3..1e5", sample, "--density", "crank=-1")

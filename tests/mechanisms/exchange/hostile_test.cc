@@ -103,6 +103,14 @@ INSTANTIATE_TEST_SUITE_P(
             "nested more than 64 deep"},
         Hostile{"TooManyElements", "<robot name='r'>" + Repeated("<a/>", 500001) + "</robot>",
                 "more than 500000 elements"},
+        Hostile{"TooManyAttributes",
+                [] {
+                  std::string text = "<robot";
+                  for (int i = 0; i < 200000; ++i) text += " a" + std::to_string(i) + "=''";
+                  return text + "/>";
+                }(),
+                "<robot> has more than 100 attributes"},
+        Hostile{"NumbersWithoutEnd", Robot(Body("b", Repeated("1 ", 1000000))), "is not a number"},
         Hostile{"CrossedTags", Robot("<a><b></a></b>"), "</a> stands where <b> of line 3"},
         Hostile{"TwoRoots", Robot("") + "<robot name='r'/>", "behind the end of <robot>"},
         Hostile{"TwoAttributes", "<robot name='r' name='s'/>", "two attributes 'name'"},

@@ -157,6 +157,13 @@ std::string Body(const std::string& name) {
          "</inertial></link>";
 }
 
+TEST(Robots, WithMoreThatIsLeftOutThanCanBeReadAreSummedUp) {
+  std::string parts;
+  for (int i = 10; i < 99; ++i) parts += "<kind" + std::to_string(i) + "/>";
+  const std::string notes = NotesOf(ReadText("<robot name='r'>" + Body("b") + parts + "</robot>"));
+  EXPECT_NE(notes.find("1 <kind29>, 69 more kinds"), notes.npos) << notes;
+}
+
 /// A vehicle that floats in the world, on which a platform slides.
 const std::string kVehicle =
     "<robot name='vehicle'><link name='world'/>" + Body("hull") + Body("platform") +

@@ -136,6 +136,18 @@ TEST_F(SdfFiles, ThatGoRoundInACircleAreNamed) {
   EXPECT_NE(what.find("a.sdf includes itself by 'a.sdf'"), what.npos) << what;
 }
 
+TEST_F(SdfFiles, ThatBecomeTooManyAreRefused) {
+  std::string twice;
+  for (int i = 0; i < 20; ++i) {
+    Write("here/" + std::to_string(i) + ".sdf",
+          Sdf(twice.empty() ? Arm("arm") : "<model name='m'>" + twice + "</model>"));
+    const std::string include = "<include><uri>" + std::to_string(i) + ".sdf</uri><name>";
+    twice = include + "a</name></include>" + include + "b</name></include>";
+  }
+  EXPECT_NE(Refusal(Include("19.sdf")).find("more than 10000 files are included"),
+            std::string::npos);
+}
+
 TEST_F(SdfFiles, HaveTheirNumbersCheckedWhereTheyStand) {
   Write("here/robot/model.sdf", Sdf(Arm("robot", "1e999")));
   const std::string what = Refusal(Include("model://robot"));
