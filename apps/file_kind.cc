@@ -95,6 +95,7 @@ std::string NounsOf(const Taken& taken) {
 
 FileKind KindOfFile(const fs::path& path) {
   std::error_code ignored;
+  if (!fs::exists(path, ignored)) return FileKind::kUnknown;
   if (fs::is_directory(path, ignored)) return KindOfFolder(path);
   const std::string beginning = Beginning(path), ending = Ending(path);
   if (beginning.starts_with("# vmech recording")) return FileKind::kRecording;

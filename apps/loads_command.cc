@@ -47,6 +47,15 @@ std::string Components(const JointCertainty& certainty, Certainty verdict) {
   return names;
 }
 
+/// What statics leaves open and no load reaches, as in " fz mx my"; empty if there is none.
+std::string UnloadedComponents(JointCertainty certainty, const JointCertainty& matters) {
+  for (size_t i = 0; i < certainty.size(); ++i) {
+    if (certainty[i] == matters[i]) certainty[i] = Certainty::kCertain;
+  }
+  const std::string components = Components(certainty, Certainty::kNotDetermined);
+  return components.empty() ? "" : components.substr(1);
+}
+
 std::string CertaintyInWords(const LoadStudyResult& loads, size_t joint) {
   const JointCertainty matters = VerdictsThatMatter(loads, joint);
   std::string words;
@@ -55,7 +64,9 @@ std::string CertaintyInWords(const LoadStudyResult& loads, size_t joint) {
     if (components.empty()) continue;
     words += fmt::format("{}{}{}", words.empty() ? "" : "; ", NameOf(verdict), components);
   }
-  return words.empty() ? "certain" : words;
+  if (words.empty()) words = "certain";
+  const std::string unloaded = UnloadedComponents(loads.certainty[joint], matters);
+  return unloaded.empty() ? words : words + "; no load on" + unloaded;
 }
 
 std::string JointLines(const StudyFile& file, const LoadStudyResult& loads) {

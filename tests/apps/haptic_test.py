@@ -77,7 +77,7 @@ class Haptic(unittest.TestCase):
     def test_replay_refuses_what_is_no_recording_of_a_session(self):
         self.assertIn("cannot be opened", self.run_vmech("replay", "absent.csv", code=2).stderr)
         (self.folder / "table.csv").write_text("t,x\n0,1\n", encoding="utf-8")
-        self.assertIn("table.csv:1", self.run_vmech("replay", "table.csv", code=2).stderr)
+        self.assertIn("table.csv: is a table", self.run_vmech("replay", "table.csv", code=2).stderr)
         self.hold("crank", "--seconds", 0.1, "--record", "hand.csv", "--quiet")
         text = (self.folder / "hand.csv").read_text(encoding="utf-8")
         bare = "".join(line for line in text.splitlines(keepends=True) if "note" not in line)
