@@ -148,7 +148,7 @@ void AddDensities(const Interface_InterfaceModel& model,
 std::vector<StatedDensity> FindDensities(const Interface_InterfaceModel& model) {
   std::vector<StatedDensity> found;
   for (int i = 1; i <= model.NbEntities(); ++i) {
-    const Handle(Standard_Transient) entity = model.Value(i);
+    const Handle(Standard_Transient)& entity = model.Value(i);
     const auto* stated_by =
         dynamic_cast<const StepRepr_PropertyDefinitionRepresentation*>(entity.get());
     if (stated_by != nullptr) AddDensities(model, *stated_by, &found);

@@ -225,7 +225,7 @@ std::string LostSolidsOf(STEPCAFControl_Reader* reader) {
   std::string first;
   int count = 0;
   for (int i = 1; i <= model->NbEntities(); ++i) {
-    const Handle(Standard_Transient) entity = model->Value(i);
+    const Handle(Standard_Transient)& entity = model->Value(i);
     if (!entity->IsKind(STANDARD_TYPE(StepShape_SolidModel))) continue;
     const bool was_tried = !transfer->Find(entity).IsNull();
     if (!was_tried || !TransferBRep::ShapeResult(transfer, entity).IsNull()) continue;
@@ -272,7 +272,7 @@ std::string UnitOf(STEPCAFControl_Reader* reader) {
 std::string WrongUnitOf(STEPCAFControl_Reader* reader) {
   const Handle(Interface_InterfaceModel) model = reader->ChangeReader().Model();
   for (int i = 1; i <= model->NbEntities(); ++i) {
-    const Handle(Standard_Transient) entity = model->Value(i);
+    const Handle(Standard_Transient)& entity = model->Value(i);
     const auto* unit = dynamic_cast<const StepBasic_SiUnitAndLengthUnit*>(entity.get());
     if (unit != nullptr && unit->Name() != StepBasic_sunMetre) {
       return model->StringLabel(entity)->ToCString();
