@@ -10,6 +10,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "vmech/base/printable_text.h"
 #include "vmech/mechanisms/explain_yaml.h"
 #include "vmech/mechanisms/parse_yaml.h"
 
@@ -159,9 +160,9 @@ std::string Quoted(std::string_view text) {
   constexpr size_t kLongest = 60;
   size_t length = std::min(text.size(), kLongest);
   while (length < text.size() && (text[length] & 0xC0) == 0x80) --length;  // whole characters
-  std::string shown(text.substr(0, length));
+  std::string shown = PrintableText(text.substr(0, length));
   for (char& c : shown) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = '?';
+    if (c == '\n' || c == '\t') c = ' ';
   }
   return "'" + shown + (length < text.size() ? "...'" : "'");
 }

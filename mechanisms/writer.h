@@ -20,9 +20,10 @@ struct WriterOptions {
 /// The mechanism as a file of the format that docs/file-format.md describes, for people: names that
 /// stand below each other are aligned, lines end before column 100, and what has its default value
 /// is left out. Every number is the shortest decimal that reads back as the same figure in SI units
-/// and radians, and a number to readers of YAML 1.1 as well (YamlNumber). In metres and radians there always is one: ReadMechanism gives the same mechanism
-/// to the last bit. In other units, and for the pitch of a screw, which files give per turn, a
-/// figure that is the image of no decimal comes back with a rounding in its last place.
+/// and radians, and a number to readers of YAML 1.1 as well (YamlNumber). In metres and radians
+/// there always is one: ReadMechanism gives the same mechanism to the last bit. In other units, and
+/// for the pitch of a screw, which files give per turn, a figure that is the image of no decimal
+/// comes back with a rounding in its last place.
 ///
 /// What the format cannot say does not come back: a name that it refuses (Node::CheckName), inertia
 /// of a link without mass, axes that are not orthonormal.

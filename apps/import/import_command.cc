@@ -84,6 +84,8 @@ void RequireOptionsFit(const ImportArguments& arguments) {
   const auto refuse = [&](bool given, bool fits, const char* message) {
     if (given && !fits) throw FileErrors(arguments.file.string(), message);
   };
+  refuse(!arguments.study.empty() || !arguments.meshes.empty(), !sdf && !urdf,
+         "--study and --meshes are for STEP files");
   refuse(!arguments.model.empty(), sdf, "--model is for SDFormat, of which a file holds several");
   refuse(!arguments.loops.empty(), urdf, "--loops is for URDF, which has no loops of its own");
   refuse(!arguments.grasps.empty(), sdf || urdf,

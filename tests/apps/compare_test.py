@@ -180,7 +180,8 @@ class Compare(unittest.TestCase):
     def test_sends_other_files_to_the_command_that_takes_them(self):
         takes = "; `vmech compare` takes a suite"
         for name, words in (("rssr.yaml", "is a mechanism, which `vmech check` reads" + takes),
-                            ("four-bar-study.yaml", "is a study, which `vmech loads` runs" + takes)):
+                            ("four-bar-study.yaml",
+                             "is a study, which `vmech loads` runs" + takes)):
             result = subprocess.run([VMECH, "compare", name], cwd=self.folder, capture_output=True,
                                     text=True, timeout=60)
             self.assertEqual(result.returncode, 2)

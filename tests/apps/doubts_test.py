@@ -4,6 +4,7 @@ Every kind of doubt comes with its figure on the terminal, in JSON and on the pa
 code alone, and is an error with --strict. The examples raise none.
 """
 
+import html
 import json
 import pathlib
 import shutil
@@ -62,9 +63,10 @@ class Doubts(unittest.TestCase):
     def expect_in_loads(self, words):
         text = vmech("loads", self.study, "--out", self.out)
         self.expect([*words, "warning: "], text)
-        self.expect(words, "\n".join(json.loads((self.out / "summary.json").read_text())["warnings"]))
+        summary = json.loads((self.out / "summary.json").read_text())
+        self.expect(words, "\n".join(summary["warnings"]))
         page = (self.out / "report.html").read_text()
-        self.expect([word.replace("'", "&#39;") if "&#39;" in page else word for word in words], page)
+        self.expect(words, html.unescape(page))
         shutil.rmtree(self.out)
         strict = vmech("loads", self.study, "--out", self.out, "--strict", code=2)
         self.expect(words, strict)
@@ -81,8 +83,8 @@ class Doubts(unittest.TestCase):
                 self.expect(words, vmech("check", self.mechanism, "--strict", code=2))
 
     def test_mechanisms_in_studies(self):
-        self.change(self.mechanism, [("-9.81", "-9810")])
-        self.expect_in_loads(["gravity is 9810 m/s^2"])
+        self.change(self.mechanism, [("-9.81", "-31")])
+        self.expect_in_loads(["gravity is 31 m/s^2"])
 
     def test_studies(self):
         original = self.study.read_text()

@@ -146,7 +146,7 @@ TEST(DidYouMean, FindsTheNearestAndLeavesTheFarAlone) {
 }
 
 TEST(Quoted, IsFitForATerminal) {
-  EXPECT_EQ(Quoted("a\x1b[31m"), "'a?[31m'");
+  EXPECT_EQ(Quoted("a\x1b[31m"), "'a\uFFFD[31m'");
   EXPECT_EQ(Quoted(std::string(100, 'a')).size(), 60 + 5u);
 }
 

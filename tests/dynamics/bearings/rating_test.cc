@@ -115,7 +115,7 @@ TEST(LoadShortfalls, SayWhatThereIsAndWhatIsAsked) {
   const std::vector<Shortfall> s =
       ShortfallsUnder(Ntn6208(), {3200, 0, 0}, 650 * kRpm, requirements);
   ASSERT_EQ(s.size(), 1u);
-  EXPECT_EQ(s[0].text, "life 26 900 h of 100 000 h");
+  EXPECT_EQ(s[0].text, "life 26\u202f900 h of 100\u202f000 h");
   EXPECT_NEAR(s[0].ratio, 0.2686, 1e-4);
 }
 

@@ -156,7 +156,7 @@ TEST_F(Sdf, TakesCompositeJointsApart) {
   ASSERT_EQ(after.joints.size(), 3u);
   EXPECT_EQ(after.joints[0].type, JointType::kPrismatic);
   EXPECT_EQ(after.joints[1].type, JointType::kPrismatic);
-  EXPECT_EQ(after.joints[2].name, "table_3");
+  EXPECT_EQ(after.joints[2].name, "table_rz");
   EXPECT_EQ(after.links.size(), mechanism.links.size() + 2);
   EXPECT_NE(exported.notes[0].find("planar, which SDF has not"), std::string::npos);
   const auto poses = LinkStartPoses(mechanism, FindSpanningTree(mechanism));
