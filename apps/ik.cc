@@ -286,6 +286,7 @@ void ReportLoops(const KinematicTree& tree, InverseKinematics& problem, IkAnswer
 IkAnswer AnswerIk(const IkQuestion& question) {
   IkAnswer answer;
   Mechanism mechanism = ReadAs({"ik", {FileKind::kMechanism}}, question.mechanism, ReadMechanism);
+  if (question.target.empty()) throw OptionError("--target is required: where the hand is");
   ReadFileUnits(question.mechanism, &answer);
   const Backend backend = ReadSolver(question.solver);
   const InverseKinematicsOptions options = ReadOptions(question);

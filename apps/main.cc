@@ -90,8 +90,8 @@ void AddIk(CLI::App* app, vmech::IkArguments* ik) {
   command
       ->add_option("--target", question.target,
                    "pose of the hand in the world: \"x y z\", \"x y z rx ry rz\" (rotation "
-                   "vector) or \"x y z qw qx qy qz\"; without a rotation that of the start")
-      ->required()
+                   "vector) or \"x y z qw qx qy qz\"; without a rotation that of the start; "
+                   "REQUIRED")
       ->type_name("NUMBERS");
   command->add_option("--grasp", question.grasp, "by which it is held (default: the first)")
       ->type_name("NAME");

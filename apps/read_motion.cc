@@ -30,13 +30,13 @@ std::vector<double> EqualSteps(double begin, double end, int steps, bool repeats
   return times;
 }
 
-/// The name that a number of earlier studies, which counted freedoms from 0, stands for.
-std::string NameForNumber(const Node& freedom, const std::vector<std::string>& names) {
+/// Earlier studies counted freedoms from 0; -1 if there is none of this number.
+int FreedomOfNumber(const Node& freedom, size_t count) {
   const double number = freedom.Number();
-  for (size_t k = 0; k < names.size(); ++k) {
-    if (number == static_cast<double>(k)) return fmt::format("; write {} for {}", names[k], k);
+  for (size_t k = 0; k < count; ++k) {
+    if (number == static_cast<double>(k)) return static_cast<int>(k);
   }
-  return "";
+  return -1;
 }
 
 /// The freedom that a drive names; the only one where it names none.
@@ -49,8 +49,9 @@ int ReadFreedom(const Node& node, JointType type) {
     return 0;
   }
   if (freedom.IsNumber()) {
-    freedom.Error("freedoms have names: " + has + NameForNumber(freedom, names));
-    return 0;
+    const int numbered = FreedomOfNumber(freedom, names.size());
+    if (numbered < 0) freedom.Error("freedoms have names: " + has);
+    return std::max(numbered, 0);
   }
   const std::string name = freedom.Text();
   const int found = FindFreedom(type, name);
@@ -280,6 +281,15 @@ bool CheckColumns(const Node& node, const CsvTable& table, const std::vector<std
   return ok;
 }
 
+namespace {
+
+std::vector<Node> DrivesOf(const Node& motion) {
+  if (motion.kind() == Node::Kind::kList) return motion.List();
+  return {motion};
+}
+
+}  // namespace
+
 bool IsRotation(JointType type, int freedom) {
   return FreedomsOfType(type).rotates[freedom];
 }
@@ -296,23 +306,40 @@ void ReadMotion(const Node& node, const Units& units, const std::filesystem::pat
     ReadHandDrive(node, units, folder, study);
     return;
   }
-  std::vector<Node> drives{node};
-  if (node.kind() == Node::Kind::kList) drives = node.List();
+  const std::vector<Node> drives = DrivesOf(node);
   if (drives.empty()) node.Error("name at least one drive");
   for (size_t i = 0; i < drives.size(); ++i) {
     ReadJointDrive(drives[i], units, folder, i == 0, study);
   }
 }
 
-std::string MotionInWords(const Node& node) {
+std::vector<std::string> NotesOnFreedoms(const Node& node, const LoadStudy& study) {
+  std::vector<std::string> notes;
+  const std::vector<Node> drives = DrivesOf(node);
+  for (size_t k = 0; k < study.drives.size() && k < drives.size(); ++k) {
+    const Node freedom = drives[k]["freedom"];
+    if (!freedom || !freedom.IsNumber()) continue;
+    const Joint& joint = study.mechanism.joints[study.drives[k].joint];
+    notes.push_back(fmt::format("freedom {} of joint '{}' is called {} now: write `freedom: {}`",
+                                study.drives[k].freedom, joint.name,
+                                NameOfFreedom(joint.type, study.drives[k].freedom),
+                                NameOfFreedom(joint.type, study.drives[k].freedom)));
+  }
+  return notes;
+}
+
+std::string MotionInWords(const Node& node, const LoadStudy& study) {
   if (node.kind() == Node::Kind::kScalar) return "at rest";
-  std::vector<Node> drives{node};
-  if (node.kind() == Node::Kind::kList) drives = node.List();
   std::string words;
-  for (const Node& drive : drives) {
+  const std::vector<Node> drives = DrivesOf(node);
+  for (size_t k = 0; k < drives.size(); ++k) {
+    const Node& drive = drives[k];
     if (!words.empty()) words += "; ";
     words += drive["grasp"] ? "a hand at " + drive["grasp"].Text() : drive["joint"].Text();
-    if (drive["freedom"]) words += "." + drive["freedom"].Text();
+    if (drive["freedom"]) {
+      const JointDrive& driven = study.drives[k];
+      words += "." + NameOfFreedom(study.mechanism.joints[driven.joint].type, driven.freedom);
+    }
     if (drive["rpm"]) words += fmt::format(" at {:g} rpm", drive["rpm"].Number());
     if (drive["speed"]) words += " at constant speed";
     if (drive["table"]) words += " through " + drive["table"].Text();

@@ -45,7 +45,10 @@ constexpr std::string_view kStill = "still";
 void ReadMotion(const Node& node, const Units& units, const std::filesystem::path& folder,
                 LoadStudy* study);
 
-/// A sound block `motion` in words: "main at 1500 rpm, 2 turns".
-std::string MotionInWords(const Node& node);
+/// What a sound block `motion` says in the manner of earlier studies, which counted freedoms.
+std::vector<std::string> NotesOnFreedoms(const Node& node, const LoadStudy& study);
+
+/// A sound block `motion`, read into `study`, in words: "main at 1500 rpm, 2 turns".
+std::string MotionInWords(const Node& node, const LoadStudy& study);
 
 }  // namespace vmech

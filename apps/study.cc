@@ -56,6 +56,7 @@ LoadCertainty CertaintyOfLoads(const JointCertainty& certainty) {
 StudyOutcome RunStudy(const StudyFile& file, const LoadStudyOptions& options) {
   StudyOutcome outcome;
   outcome.loads = RunLoadStudy(file.study, options);
+  outcome.loads.notes.insert(outcome.loads.notes.begin(), file.notes.begin(), file.notes.end());
   outcome.warnings = outcome.loads.warnings;
   for (const BearingRequest& request : file.bearings) {
     const Joint& joint = file.study.mechanism.joints[request.joint];

@@ -26,7 +26,8 @@ struct StudyFile {
   std::string motion;  ///< the motion in words: "main at 1500 rpm, 2 turns"
   LoadStudy study;
   std::vector<BearingRequest> bearings;
-  std::vector<Bearing> catalogue;  ///< the built-in one unless the file names another
+  std::vector<Bearing> catalogue;       ///< the built-in one unless the file names another
+  std::vector<std::string> notes = {};  ///< what the file says in a manner that is no longer used
 };
 
 /// What came out for the bearings of one joint.

@@ -278,7 +278,8 @@ StudyFile ParseStudy(std::string_view text, const std::filesystem::path& path) {
     if (ReadNamedMechanism(root["mechanism"], folder, &file)) ReadReferences(root, folder, &file);
   }
   document.ThrowErrors();
-  file.motion = MotionInWords(root["motion"]);
+  file.motion = MotionInWords(root["motion"], file.study);
+  file.notes = NotesOnFreedoms(root["motion"], file.study);
   return file;
 }
 

@@ -8,13 +8,17 @@ set(vmech_common_headers
   <fmt/format.h> <functional> <limits> <memory> <optional> <span> <stdexcept> <string>
   <string_view> <utility> <vector>)
 
-# vmech_add_precompiled(<name> HEADERS ... LIBS ...): headers precompiled for all targets with the
-# same options.
+# vmech_add_precompiled(<name> [PROGRAMS] HEADERS ... LIBS ...): headers precompiled for all targets
+# with the same options, libraries or PROGRAMS.
 function(vmech_add_precompiled name)
-  cmake_parse_arguments(ARG "" "" "HEADERS;LIBS" ${ARGN})
+  cmake_parse_arguments(ARG "PROGRAMS" "" "HEADERS;LIBS" ${ARGN})
   set(source ${PROJECT_BINARY_DIR}/precompiled/${name}.cc)
-  file(CONFIGURE OUTPUT ${source} CONTENT "")
-  add_library(vmech_precompiled_${name} OBJECT EXCLUDE_FROM_ALL ${source})
+  file(CONFIGURE OUTPUT ${source} CONTENT "int main() {}\n")
+  if(ARG_PROGRAMS)
+    add_executable(vmech_precompiled_${name} EXCLUDE_FROM_ALL ${source})
+  else()
+    add_library(vmech_precompiled_${name} OBJECT EXCLUDE_FROM_ALL ${source})
+  endif()
   target_link_libraries(vmech_precompiled_${name} PRIVATE
     Eigen3::Eigen fmt::fmt vmech_settings ${ARG_LIBS})
   target_compile_definitions(vmech_precompiled_${name} PRIVATE

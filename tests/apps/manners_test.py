@@ -231,11 +231,20 @@ class Freedoms(InFolder):
         page = (self.folder / "out" / "report.html").read_text(encoding="utf-8")
         self.assertIn("Joint tube.rz turns at 60 rpm", page)
 
-    def test_numbers_of_earlier_studies_are_refused_with_the_name(self):
-        for number, hint in ((0, "write z for 0"), (1, "write rz for 1"), (2, "has z, rz")):
-            self.study(f"{{joint: tube, freedom: {number}, rpm: 60, turns: 1, steps: 18}}")
-            self.expect(2, "loads", "study.yaml",
-                        words=("study.yaml:4:", "freedoms have names", hint))
+    def test_numbers_of_earlier_studies_are_taken_with_the_name(self):
+        turning, sliding = ", rpm: 60, turns: 1, steps: 18}", ", speed: 10}"
+        for out, turn, slide in (("numbered", 1, 0), ("named", "rz", "z")):
+            self.study(f"[{{joint: tube, freedom: {turn}{turning}, "
+                       f"{{joint: tube, freedom: {slide}{sliding}]")
+            result = self.expect(0, "loads", "study.yaml", "--out", out)
+            self.assertIn("tube.rz at 60 rpm", result.stdout)
+            self.assertEqual("note: freedom 1 of joint 'tube' is called rz now" in result.stdout,
+                             out == "numbered")
+        self.assertEqual((self.folder / "numbered" / "loads.csv").read_text(),
+                         (self.folder / "named" / "loads.csv").read_text())
+        self.study("{joint: tube, freedom: 2, rpm: 60, turns: 1, steps: 18}")
+        self.expect(2, "loads", "study.yaml",
+                    words=("study.yaml:4:", "freedoms have names", "has z, rz"))
         self.study("{joint: tube, rpm: 60, turns: 1, steps: 18}")
         self.expect(2, "loads", "study.yaml", words=("a cylindrical joint has z, rz",))
         self.study("{joint: tube, freedom: ry, rpm: 60, turns: 1, steps: 18}")

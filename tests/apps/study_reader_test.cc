@@ -205,8 +205,6 @@ TEST_F(StudyReader, RefusesWhatIsMalformed) {
       {"steps: 720", "steps: 720, repeats: true", "used with a table only"},
       {"joint: main, rpm: 1500", "joint: guide, rpm: 1500", "this freedom is a translation"},
       {"joint: main", "joint: main, freedom: z", "no freedom 'z': a revolute joint has rz"},
-      {"joint: main", "joint: main, freedom: 0",
-       "freedoms have names: a revolute joint has rz; write rz for 0"},
       {"joint: main", "joint: main, freedom: 1", "freedoms have names: a revolute joint has rz"},
       {"link: slider", "link: slidr", "did you mean 'slider'?"},
       {"force: [-200, 0, 0]", "force: [-200, 0]", "a list of 3 numbers, not a list of 2"},
