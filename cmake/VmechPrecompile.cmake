@@ -5,7 +5,7 @@
 option(VMECH_PRECOMPILE "parse the most used headers once" ${VMECH_PRECOMPILE_DEFAULT})
 set(vmech_common_headers
   <Eigen/Cholesky> <Eigen/Core> <Eigen/Geometry> <algorithm> <array> <cmath> <cstdint> <filesystem>
-  <fmt/format.h> <functional> <limits> <memory> <optional> <span> <stdexcept> <string>
+  <functional> <limits> <memory> <optional> <span> <stdexcept> <string>
   <string_view> <utility> <vector>)
 
 # vmech_add_precompiled(<name> [PROGRAMS] HEADERS ... LIBS ...): headers precompiled for all targets
@@ -20,7 +20,7 @@ function(vmech_add_precompiled name)
     add_library(vmech_precompiled_${name} OBJECT EXCLUDE_FROM_ALL ${source})
   endif()
   target_link_libraries(vmech_precompiled_${name} PRIVATE
-    Eigen3::Eigen fmt::fmt vmech_settings ${ARG_LIBS})
+    Eigen3::Eigen vmech_settings ${ARG_LIBS})
   target_compile_definitions(vmech_precompiled_${name} PRIVATE
     EIGEN_MAX_ALIGN_BYTES=64 EIGEN_MAX_STATIC_ALIGN_BYTES=16)
   target_precompile_headers(vmech_precompiled_${name} PRIVATE ${vmech_common_headers}
@@ -35,5 +35,5 @@ function(vmech_precompile target name)
 endfunction()
 
 if(VMECH_PRECOMPILE)
-  vmech_add_precompiled(library LIBS vmech_kernel_settings)
+  vmech_add_precompiled(library HEADERS <fmt/format.h> LIBS fmt::fmt vmech_kernel_settings)
 endif()
