@@ -112,7 +112,8 @@ class Help(unittest.TestCase):
 
     def test_wrong_command_lines_are_code_1_on_standard_error(self):
         for arguments in ((), ("chekc",), ("check",), ("loads",), ("loads", "a", "b"),
-                          ("ik", "four-bar.yaml"), ("loads", "s.yaml", "--threads", "65"),
+                          ("ik", EXAMPLES / "four-bar.yaml"),
+                          ("loads", "s.yaml", "--threads", "65"),
                           ("loads", "s.yaml", "--outt")):
             with self.subTest(arguments=arguments):
                 result = vmech(*arguments)
