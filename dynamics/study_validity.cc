@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <stdexcept>
 
 #include "vmech/mechanisms/validity.h"
@@ -12,15 +11,6 @@ namespace {
 
 [[noreturn]] void Refuse(const std::string& field, const std::string& defect) {
   throw std::invalid_argument(field + defect);
-}
-
-void RequireFinite(const std::string& field, double value) {
-  if (!std::isfinite(value)) Refuse(field, fmt::format(" = {}, must be a finite number", value));
-}
-
-void RequireNonNegative(const std::string& field, double value) {
-  RequireFinite(field, value);
-  if (value < 0) Refuse(field, fmt::format(" = {}, must not be negative", value));
 }
 
 /// Increasing and finite, entry by entry.

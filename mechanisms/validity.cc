@@ -23,15 +23,7 @@ void RequireRange(std::string_view field, double value, double low, double high,
   Refuse(field, fmt::format(" = {}, must be {}", value, range));
 }
 
-void RequireFinite(std::string_view field, double value) {
-  if (!std::isfinite(value)) Refuse(field, fmt::format(" = {}, must be a finite number", value));
-}
-
-void RequireNonNegative(std::string_view field, double value) {
-  RequireRange(field, value, 0, std::numeric_limits<double>::max(), "finite and not negative");
-}
-
-void RequireFinite(std::string_view field, const Vector3d& p) {
+void RequireFinitePoint(std::string_view field, const Vector3d& p) {
   if (p.allFinite()) return;
   Refuse(field, fmt::format(" = ({}, {}, {}), must be finite", p[0], p[1], p[2]));
 }
@@ -45,7 +37,7 @@ void RequireLength(std::string_view field, size_t length, int wanted) {
 
 void RequirePose(const std::string& field, const Posed& X) {
   constexpr double kSquare = 1e-9;
-  RequireFinite(field + ".p", X.p);
+  RequireFinitePoint(field + ".p", X.p);
   const double defect = (X.R.transpose() * X.R - Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (!(defect < kSquare) || !(X.R.determinant() > 0)) {
     Refuse(field, fmt::format(".R is no rotation: R'R is off the identity by {:.2g}, and its "
@@ -66,7 +58,7 @@ void RequireDistinctNames(std::string_view list, const std::vector<Item>& items)
 void RequireMassProperties(const std::string& link, const MassProperties& body) {
   constexpr double kRounding = 1e-3;  // of figures that are published with three digits
   RequireNonNegative(link + ".mass_properties.mass", body.mass);
-  RequireFinite(link + ".mass_properties.p_LoLcm", body.p_LoLcm);
+  RequireFinitePoint(link + ".mass_properties.p_LoLcm", body.p_LoLcm);
   const Matrix3d& I = body.I_Lcm;
   const std::string field = link + ".mass_properties.I_Lcm";
   if (!I.allFinite()) Refuse(field, " holds values that are not finite");
@@ -169,6 +161,14 @@ void RequireGrasps(const Mechanism& mechanism) {
 
 }  // namespace
 
+void RequireFinite(std::string_view field, double value) {
+  if (!std::isfinite(value)) Refuse(field, fmt::format(" = {}, must be a finite number", value));
+}
+
+void RequireNonNegative(std::string_view field, double value) {
+  RequireRange(field, value, 0, std::numeric_limits<double>::max(), "finite and not negative");
+}
+
 void RequireIndex(std::string_view field, int index, size_t count) {
   if (index >= 0 && static_cast<size_t>(index) < count) return;
   Refuse(field,
@@ -178,7 +178,7 @@ void RequireIndex(std::string_view field, int index, size_t count) {
 }
 
 void RequireValid(const Mechanism& mechanism) {
-  RequireFinite("gravity_W", mechanism.gravity_W);
+  RequireFinitePoint("gravity_W", mechanism.gravity_W);
   RequireIndex("ground", mechanism.ground, mechanism.links.size());
   RequireRange("tolerance", mechanism.tolerance, 0, kWidestTolerance,
                fmt::format("in [0, {}]", kWidestTolerance));

@@ -18,4 +18,8 @@ void RequireValid(const Mechanism& mechanism);
 /// @throws std::invalid_argument naming field, value and range.
 void RequireIndex(std::string_view field, int index, size_t count);
 
+/// @throws std::invalid_argument naming field and value.
+void RequireFinite(std::string_view field, double value);
+void RequireNonNegative(std::string_view field, double value);
+
 }  // namespace vmech
