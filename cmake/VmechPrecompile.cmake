@@ -35,7 +35,7 @@ function(vmech_precompile target name)
     if(type STREQUAL "EXECUTABLE")
       # g++ 12 warns of what it sees inside std::string, since it takes a header that is precompiled
       # for one of the project's own. Builds without find the mistakes.
-      target_compile_options(${target} PRIVATE -Wno-error)
+      set_target_properties(${target} PROPERTIES VMECH_ONLY_WARNS ON)
     endif()
   endif()
 endfunction()
