@@ -1,10 +1,7 @@
 #include "vmech/dynamics/coupled_dynamics.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "vmech/dynamics/contact_friction.h"
 #include "vmech/kinematics/forward_kinematics.h"
@@ -32,6 +29,7 @@ constexpr double kStillClosed = 1e-9;  // [-] beyond, a step is not taken
 constexpr double kSameWay = 1e-3;      // of a velocity, across the last
 constexpr double kMuchFaster = 10;     // than in the last step
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+constexpr double kOpen = 1e-6;     // loops at the start; poses of files close to 1e-13
 constexpr double kFarthest = 0.1;  // [rad] and [m] that the coordinates move in a step
 
 HandCoupling Checked(HandCoupling coupling, GraspKind kind) {
@@ -46,15 +44,6 @@ HandCoupling Checked(HandCoupling coupling, GraspKind kind) {
     coupling.damping.tail<3>().setZero();
   }
   return coupling;
-}
-
-void RequireClosed(double closure) {
-  constexpr double kOpen = 1e-6;
-  if (closure <= kOpen) return;
-  throw std::invalid_argument(fmt::format(
-      "CoupledDynamics: the loops are open by {:.3g} of the characteristic length at q; "
-      "close them first (Assemble)",
-      closure));
 }
 
 /// Of a spring along `way` that pulls with `pull`, and with no more than `most`.
@@ -124,7 +113,7 @@ CoupledDynamics::CoupledDynamics(const KinematicTree& tree, const GraspFrame& gr
   RefuseUnrenderedFriction(tree);
   ListFreedoms();
   pose_.Set(q);
-  RequireClosed(pose_.e2().norm());
+  RequireClosed("CoupledDynamics", pose_.e2().norm(), kOpen);
   hand_.X = pose_.grasp_axes();
   TakeInertia();
   TakeVelocities();

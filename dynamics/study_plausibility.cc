@@ -72,10 +72,11 @@ void DoubtStillLinks(const LoadStudy& study, const LoadStudyResult& result, Doub
     if (still[i] && !held[i]) names.push_back(mechanism.links[i].name);
   }
   if (names.empty()) return;
-  doubts->push_back(fmt::format(
-      "the drive moves, but '{}' not: `vmech check` tells which joints are locked; another anchor "
-      "or another drive may be meant",
-      fmt::join(names, "', '")));
+  doubts->push_back(
+      fmt::format("the mechanism moves, but '{}' not: `vmech check` tells which joints are locked; "
+                  "another anchor "
+                  "or another drive may be meant",
+                  fmt::join(names, "', '")));
 }
 
 void DoubtTable(const std::string& what, const TableRoughness& roughness, Doubts* doubts) {

@@ -123,12 +123,7 @@ HandTracker::HandTracker(const KinematicTree& tree, const GraspFrame& grasp, con
   closing_options_.weight = closing_options_.max_weight = kClosingWeight;
   problem_.SetTarget(problem_.GraspPose(q));
   at_trial_.Evaluate(problem_, q);
-  if (!(at_trial_.c.lpNorm<Eigen::Infinity>() <= options.closure_tolerance)) {
-    throw std::invalid_argument(
-        fmt::format("HandTracker: the loops are open by {:.3g} of the characteristic length at the "
-                    "start; close them first (Assemble)",
-                    at_trial_.c.lpNorm<Eigen::Infinity>()));
-  }
+  RequireClosed("HandTracker", at_trial_.c.lpNorm<Eigen::Infinity>(), options.closure_tolerance);
   StackJacobians();
   unseen_ = unseen_reference_ = UnseenVelocities(&problem_, q);
   unseen_weight_ = A_.colwise().squaredNorm().maxCoeff();

@@ -31,6 +31,14 @@ void RequireVelocities(std::string_view field, const KinematicTree& tree,
   }
 }
 
+void RequireClosed(std::string_view field, double error, double tolerance) {
+  if (error <= tolerance) return;
+  throw std::invalid_argument(
+      fmt::format("{}: the loops are open by {:.3g} of the characteristic length at the start; "
+                  "close them first (Assemble)",
+                  field, error));
+}
+
 void RequireNode(std::string_view field, const KinematicTree& tree, int node) {
   if (node >= -1 && node < static_cast<int>(tree.nodes.size())) return;
   throw std::invalid_argument(

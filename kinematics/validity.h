@@ -15,6 +15,8 @@ void RequireCoordinates(std::string_view field, const KinematicTree& tree, const
 /// Indices in v.
 void RequireVelocities(std::string_view field, const KinematicTree& tree,
                        const std::vector<int>& indices);
+/// Loops that are open by no more than `tolerance`, dimensionless as LargestLoopError.
+void RequireClosed(std::string_view field, double error, double tolerance);
 /// The index of a node; -1 is the ground.
 void RequireNode(std::string_view field, const KinematicTree& tree, int node);
 
