@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "vmech/apps/ik.h"
+#include "vmech/apps/ik/ik.h"
 
 namespace vmech {
 

@@ -14,14 +14,14 @@
 #include "vmech/apps/compare/run_comparison.h"
 #include "vmech/apps/compare/suite_reader.h"
 #include "vmech/apps/compare/summary_json.h"
-#include "vmech/apps/file_kind.h"
+#include "vmech/apps/console/option_error.h"
+#include "vmech/apps/console/progress_bar.h"
+#include "vmech/apps/files/file_kind.h"
+#include "vmech/apps/files/result_folder.h"
 #include "vmech/apps/mpi_session.h"
-#include "vmech/apps/option_error.h"
-#include "vmech/apps/progress_bar.h"
-#include "vmech/apps/result_folder.h"
 #include "vmech/comparison/statistics.h"
 #include "vmech/comparison/target_maker.h"
-#include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/files/document.h"
 
 namespace vmech {
 namespace {
@@ -32,12 +32,12 @@ int Jobs(const CompareArguments& arguments) {
 }
 
 /// The solvers of that names, each once, in the order of tables; all if there is no name.
-std::vector<Contestant> SolversNamed(const std::vector<std::string>& names) {
+std::vector<SolverEntry> SolversNamed(const std::vector<std::string>& names) {
   std::vector<std::string> known;
-  for (const Contestant solver : AllContestants()) known.emplace_back(solver.name());
-  std::vector<Contestant> solvers;
+  for (const SolverEntry solver : AllContestants()) known.emplace_back(solver.name());
+  std::vector<SolverEntry> solvers;
   for (const std::string& name : names) {
-    const std::optional<Contestant> solver = ContestantFromName(name);
+    const std::optional<SolverEntry> solver = ContestantFromName(name);
     if (!solver) {
       throw OptionError(fmt::format("--solvers: {} is no solver{}; there are {}", Quoted(name),
                                     DidYouMean(name, known), fmt::join(known, ", ")));
@@ -58,11 +58,11 @@ void CheckMechanisms(const Suite& suite) {
 void PrintSummary(const Suite& suite, const std::vector<Result>& results,
                   const ResultFolder& folder) {
   size_t width = 8;
-  for (const Contestant solver : AllContestants()) width = std::max(width, solver.name().size());
+  for (const SolverEntry solver : AllContestants()) width = std::max(width, solver.name().size());
   fmt::print("{}: {} rows, solved of each kind\n  {:<{}}", suite.name, results.size(), "", width);
   for (const TargetBlock& block : suite.blocks) fmt::print(" {:>12}", block.name);
   fmt::print("\n");
-  for (const Contestant solver : SolversOf(results)) {
+  for (const SolverEntry solver : SolversOf(results)) {
     fmt::print("  {:<{}}", solver.name(), width);
     for (size_t b = 0; b < suite.blocks.size(); ++b) {
       const Tally tally = TallyOf(suite, results, [&](const Result& r) {
@@ -77,7 +77,7 @@ void PrintSummary(const Suite& suite, const std::vector<Result>& results,
 
 int Compare(const CompareArguments& arguments, MpiSession* mpi) {
   const Suite suite = ReadAs({"compare", {FileKind::kSuite}}, arguments.suite, ReadSuite);
-  const std::vector<Contestant> solvers = SolversNamed(arguments.solvers);
+  const std::vector<SolverEntry> solvers = SolversNamed(arguments.solvers);
   CheckMechanisms(suite);
   const Work work = ComparisonWork(suite);
   if (mpi != nullptr && mpi->is_worker()) {
@@ -88,9 +88,9 @@ int Compare(const CompareArguments& arguments, MpiSession* mpi) {
   const std::filesystem::path& folder_name = arguments.out.empty() ? by_name : arguments.out;
   ResultFolder folder(folder_name, ResultKind::kComparison);
   Journal journal(folder_name, {suite.digest, DigestOfThisProgram(), VMECH_VERSION}, suite);
-  const Spread spread = [&](const std::vector<std::string>& tasks, const Foreman& foreman) {
-    mpi != nullptr ? mpi->Run(tasks, foreman)
-                   : RunInProcesses(Jobs(arguments), tasks, work, foreman);
+  const Spread spread = [&](const std::vector<std::string>& tasks, const Coordinator& coordinator) {
+    mpi != nullptr ? mpi->Run(tasks, coordinator)
+                   : RunInProcesses(Jobs(arguments), tasks, work, coordinator);
   };
   std::vector<Result> results;
   {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/files/document.h"
 
 namespace vmech {
 

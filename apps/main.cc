@@ -12,11 +12,11 @@
 
 #include "vmech/apps/commands.h"
 #include "vmech/apps/completion.h"
+#include "vmech/apps/console/option_error.h"
+#include "vmech/apps/console/printable_streams.h"
+#include "vmech/apps/console/suggestion.h"
 #include "vmech/apps/import_launcher.h"
-#include "vmech/apps/option_error.h"
-#include "vmech/apps/printable_streams.h"
-#include "vmech/apps/suggestion.h"
-#include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/files/document.h"
 #include "vmech/mechanisms/mechanism.h"
 
 namespace {

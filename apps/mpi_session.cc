@@ -53,7 +53,7 @@ class OpenMpiSession final : public MpiSession {
     }
   }
 
-  void Run(const std::vector<std::string>& tasks, const Foreman& foreman) override {
+  void Run(const std::vector<std::string>& tasks, const Coordinator& coordinator) override {
     std::vector<std::optional<size_t>> task_of(static_cast<size_t>(size_));
     size_t next = 0;
     int busy = 0;
@@ -61,7 +61,7 @@ class OpenMpiSession final : public MpiSession {
       const Message message = Receive(MPI_ANY_SOURCE);
       std::optional<size_t>& task = task_of[static_cast<size_t>(message.from)];
       if (message.tag == kAnswer) {
-        foreman.answer(*task, message.text);
+        coordinator.answer(*task, message.text);
         continue;
       }
       if (task) --busy;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "vmech/apps/compare/crew.h"
+#include "vmech/apps/compare/process_pool.h"
 
 namespace vmech {
 
@@ -22,7 +22,7 @@ class MpiSession {
   /// In a worker: does tasks until there are no more.
   virtual void Serve(const Work& work) = 0;
   /// In the first process: as RunInProcesses.
-  virtual void Run(const std::vector<std::string>& tasks, const Foreman& foreman) = 0;
+  virtual void Run(const std::vector<std::string>& tasks, const Coordinator& coordinator) = 0;
 };
 
 /// How many processes Open MPI's mpirun started; 1 if it did not start this one.

@@ -1,21 +1,40 @@
-# vmech_add_module(<path> [LOCAL] [SOURCES ...] HEADERS ... [INTERNAL ...] [PUBLIC ...]
+# vmech_add_module(<path> [LOCAL] COMPONENTS ... [INTERNAL ...] [SOURCES ...] [PUBLIC ...]
 #                  [PRIVATE ...])
 #
-# One folder, one target. The module `dynamics/bearings` becomes the library vmech_dynamics_bearings
-# (alias vmech::dynamics_bearings) whose headers are included as "vmech/dynamics/bearings/<file>.h",
-# in this tree and from an installation. Each module has an include root of its own, made of
-# forwarding headers: a module can include only what it links to. INTERNAL headers are not
-# installed: what is passed in them depends on the instruction set that the library is compiled for.
+# One folder, one library: the module `dynamics/bearings` becomes vmech_dynamics_bearings (alias
+# vmech::dynamics_bearings). A component `loads/load_study` is a header, a source or both, in the
+# module's folder or a folder below. Its header is included as
+# "vmech/<path>/loads/load_study.h", in this tree and from an installation. Each module has an
+# include root of its own, made of forwarding headers: a module can include only what it links to.
+# INTERNAL components have headers that are not installed: what is passed in them depends on the
+# instruction set that the library is compiled for. SOURCES are those that belong to no component.
 # Nothing of a LOCAL module is installed: it is part of a program.
 
 function(vmech_add_module path)
-  cmake_parse_arguments(ARG "LOCAL" "" "SOURCES;HEADERS;INTERNAL;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "LOCAL" "" "COMPONENTS;INTERNAL;SOURCES;PUBLIC;PRIVATE" ${ARGN})
   string(REPLACE "/" "_" name ${path})
   set(target vmech_${name})
   set(include_root ${PROJECT_BINARY_DIR}/include/${name})
 
-  if(ARG_SOURCES)
-    add_library(${target} ${ARG_SOURCES} ${ARG_HEADERS} ${ARG_INTERNAL})
+  set(sources ${ARG_SOURCES})
+  foreach(component ${ARG_COMPONENTS} ${ARG_INTERNAL})
+    if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${component}.cc)
+      list(APPEND sources ${component}.cc)
+    elseif(NOT EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${component}.h)
+      message(FATAL_ERROR "vmech_add_module(${path}): no ${component}.h and no ${component}.cc")
+    endif()
+    if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${component}.h)
+      file(CONFIGURE OUTPUT ${include_root}/vmech/${path}/${component}.h @ONLY
+           CONTENT "#include \"${CMAKE_CURRENT_SOURCE_DIR}/${component}.h\"\n")
+      if(NOT ARG_LOCAL AND NOT component IN_LIST ARG_INTERNAL)
+        get_filename_component(folder vmech/${path}/${component} DIRECTORY)
+        install(FILES ${component}.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder})
+      endif()
+    endif()
+  endforeach()
+
+  if(sources)
+    add_library(${target} ${sources})
     set_target_properties(${target} PROPERTIES VERSION ${PROJECT_VERSION}
                           SOVERSION ${PROJECT_VERSION_MAJOR})
     target_link_libraries(${target} PRIVATE ${ARG_PRIVATE} $<BUILD_INTERFACE:vmech_settings>
@@ -28,12 +47,6 @@ function(vmech_add_module path)
   endif()
   add_library(vmech::${name} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
-
-  foreach(header ${ARG_HEADERS} ${ARG_INTERNAL})
-    set(forward ${include_root}/vmech/${path}/${header})
-    file(CONFIGURE OUTPUT ${forward} @ONLY
-         CONTENT "#include \"${CMAKE_CURRENT_SOURCE_DIR}/${header}\"\n")
-  endforeach()
   target_include_directories(${target} ${scope}
     $<BUILD_INTERFACE:${include_root}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(${target} ${scope} cxx_std_20)
@@ -41,7 +54,6 @@ function(vmech_add_module path)
                              EIGEN_MAX_STATIC_ALIGN_BYTES=16)
   target_link_libraries(${target} ${scope} ${ARG_PUBLIC})
   if(NOT ARG_LOCAL)
-    install(FILES ${ARG_HEADERS} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/vmech/${path})
     install(TARGETS ${target} EXPORT vmech-targets)
   endif()
 endfunction()

@@ -3,10 +3,12 @@
 #include <cmath>
 #include <utility>
 
-#include "vmech/kinematics/assembly.h"
-#include "vmech/kinematics/configuration_distance.h"
-#include "vmech/kinematics/linear_algebra.h"
-#include "vmech/kinematics/mobility.h"
+#include "vmech/base/linear_algebra/linear_algebra.h"
+#include "vmech/kinematics/inverse/configuration_distance.h"
+#include "vmech/kinematics/loops/assembly.h"
+#include "vmech/kinematics/loops/dimensionless_loops.h"
+#include "vmech/kinematics/loops/mobility.h"
+#include "vmech/kinematics/tree/forward_kinematics.h"
 
 namespace vmech {
 MatrixXd FreeMotionBasis(const KinematicTree& tree, const VectorXd& q) {
@@ -41,7 +43,7 @@ bool ClosedWalk::TryStep(double size, const VectorXd& wish) {
   const VectorXd along = Z * (Z.transpose() * wish);
   if (along.norm() <= kNoMotion * wish.norm()) return false;
   VectorXd next = q_;
-  Integrate(tree_, size * scale_.cwiseProduct(along.normalized()), &next);
+  MoveCoordinates(tree_, size * scale_.cwiseProduct(along.normalized()), &next);
   if (!Assemble(tree_, AssemblyOptions::Nearby(), &next).closed || !WithinLimits(next))
     return false;
   const double distance = ConfigurationDistance(tree_, q_, next);

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "vmech/comparison/random.h"
-#include "vmech/kinematics/kinematic_tree.h"
+#include "vmech/kinematics/tree/kinematic_tree.h"
 #include "vmech/solvers/constrained_least_squares.h"
 
 namespace vmech {

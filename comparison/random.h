@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <initializer_list>
 
-#include "vmech/mechanisms/pose.h"
+#include "vmech/base/pose.h"
 
 namespace vmech {
 

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "vmech/comparison/contestant.h"
+#include "vmech/comparison/solver_entry.h"
 #include "vmech/comparison/suite.h"
 
 namespace vmech {
@@ -43,7 +43,7 @@ Branch BranchFromName(std::string_view name);    ///< @throws std::invalid_argum
 /// One problem and one solver. Of a path, counts and time are sums, errors the largest.
 struct Result {
   ProblemId problem;
-  Contestant solver;
+  SolverEntry solver;
   Verdict verdict = Verdict::kFailed;
   std::string message;
   int targets = 1;  ///< of a path; else 1

@@ -9,12 +9,13 @@
 #include <memory>
 #include <vector>
 
+#include "vmech/base/linear_algebra/linear_algebra.h"
 #include "vmech/comparison/statistics.h"
-#include "vmech/kinematics/configuration_distance.h"
-#include "vmech/kinematics/hand_tracker.h"
-#include "vmech/kinematics/linear_algebra.h"
-#include "vmech/kinematics/mobility.h"
-#include "vmech/kinematics/unseen_motions.h"
+#include "vmech/kinematics/inverse/configuration_distance.h"
+#include "vmech/kinematics/inverse/hand_tracker.h"
+#include "vmech/kinematics/loops/dimensionless_loops.h"
+#include "vmech/kinematics/loops/mobility.h"
+#include "vmech/kinematics/loops/unseen_motions.h"
 #include "vmech/solvers/run.h"
 
 namespace vmech {
@@ -241,7 +242,7 @@ void FollowPath(const Suite& suite, const TargetBlock& block, const Problem& pro
 }  // namespace
 
 Result SolveProblem(const Suite& suite, const ProblemId& id, const Problem& problem,
-                    Subject* subject, Contestant solver) {
+                    Subject* subject, SolverEntry solver) {
   Result result;
   result.problem = id;
   result.solver = solver;

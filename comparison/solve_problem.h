@@ -15,6 +15,6 @@ namespace vmech {
 /// grasp tells the configuration. Configurations that differ by motions alone that neither grasp
 /// nor loops see (unseen_motions.h) are the same here.
 Result SolveProblem(const Suite& suite, const ProblemId& id, const Problem& problem,
-                    Subject* subject, Contestant solver);
+                    Subject* subject, SolverEntry solver);
 
 }  // namespace vmech

@@ -22,9 +22,9 @@ Tally TallyOf(const Suite& suite, const std::vector<Result>& results, const Filt
   return tally;
 }
 
-std::vector<Contestant> SolversOf(const std::vector<Result>& results) {
-  std::vector<Contestant> solvers;
-  for (const Contestant& solver : AllContestants()) {
+std::vector<SolverEntry> SolversOf(const std::vector<Result>& results) {
+  std::vector<SolverEntry> solvers;
+  for (const SolverEntry& solver : AllContestants()) {
     if (std::any_of(results.begin(), results.end(),
                     [&](const Result& result) { return result.solver == solver; })) {
       solvers.push_back(solver);
@@ -34,7 +34,7 @@ std::vector<Contestant> SolversOf(const std::vector<Result>& results) {
 }
 
 std::vector<std::vector<double>> CostsOf(const Suite& suite, const std::vector<Result>& results,
-                                         const std::vector<Contestant>& solvers,
+                                         const std::vector<SolverEntry>& solvers,
                                          const Filter& filter,
                                          const std::function<double(const Result&)>& measure) {
   std::map<ProblemId, std::vector<double>> costs;

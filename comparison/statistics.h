@@ -25,12 +25,12 @@ using Filter = std::function<bool(const Result&)>;
 Tally TallyOf(const Suite& suite, const std::vector<Result>& results, const Filter& filter);
 
 /// The solvers that results are of, in the order of AllContestants.
-std::vector<Contestant> SolversOf(const std::vector<Result>& results);
+std::vector<SolverEntry> SolversOf(const std::vector<Result>& results);
 
 /// One row per problem that a filter lets pass, one column per solver: a measure where the solver
 /// succeeded, infinity where it did not.
 std::vector<std::vector<double>> CostsOf(const Suite& suite, const std::vector<Result>& results,
-                                         const std::vector<Contestant>& solvers,
+                                         const std::vector<SolverEntry>& solvers,
                                          const Filter& filter,
                                          const std::function<double(const Result&)>& measure);
 

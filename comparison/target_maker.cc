@@ -9,11 +9,11 @@
 #include <optional>
 #include <stdexcept>
 
-#include "vmech/kinematics/assembled_mechanism.h"
-#include "vmech/kinematics/configuration_distance.h"
-#include "vmech/kinematics/linear_algebra.h"
-#include "vmech/kinematics/mobility.h"
-#include "vmech/kinematics/unseen_motions.h"
+#include "vmech/base/linear_algebra/linear_algebra.h"
+#include "vmech/kinematics/inverse/configuration_distance.h"
+#include "vmech/kinematics/loops/assembled_mechanism.h"
+#include "vmech/kinematics/loops/mobility.h"
+#include "vmech/kinematics/loops/unseen_motions.h"
 
 namespace vmech {
 namespace {

@@ -6,7 +6,7 @@
 #include "vmech/comparison/closed_walk.h"
 #include "vmech/comparison/random.h"
 #include "vmech/comparison/suite.h"
-#include "vmech/kinematics/inverse_kinematics.h"
+#include "vmech/kinematics/inverse/inverse_kinematics.h"
 
 namespace vmech {
 

@@ -70,11 +70,6 @@ int FindFreedom(JointType type, std::string_view name) {
   return found == names.end() ? -1 : static_cast<int>(found - names.begin());
 }
 
-std::string NameOfFreedom(const Joint& joint, int freedom) {
-  if (FreedomsOf(joint.type) < 2) return joint.name;
-  return joint.name + "." + NameOfFreedom(joint.type, freedom);
-}
-
 Matrix3d ZOnto(int axis) {
   Matrix3d R = Matrix3d::Zero();
   R(axis, 2) = R((axis + 1) % 3, 0) = R((axis + 2) % 3, 1) = 1;

@@ -5,7 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "vmech/mechanisms/mechanism.h"
+#include "vmech/base/pose.h"
+#include "vmech/mechanisms/joint_type.h"
 
 namespace vmech {
 
@@ -46,9 +47,6 @@ std::vector<std::string> NamesOfFreedoms(JointType type);
 
 /// The index of a freedom by its name; -1 if the type has none of that name.
 int FindFreedom(JointType type, std::string_view name);
-
-/// A freedom among those of a mechanism: "pin" where it is the joint's only one, else "ball.rx".
-std::string NameOfFreedom(const Joint& joint, int freedom);
 
 /// The cyclic permutation of the axes that brings z onto the given one.
 Matrix3d ZOnto(int axis);

@@ -10,14 +10,6 @@
 namespace vmech {
 namespace {
 
-struct TypeInfo {
-  std::string_view name;
-  int freedoms;
-};
-
-constexpr TypeInfo kTypes[] = {{"revolute", 1},  {"prismatic", 1}, {"cylindrical", 2}, {"screw", 1},
-                               {"universal", 2}, {"spherical", 3}, {"planar", 3},      {"weld", 0}};
-
 template <typename Item>
 int FindByName(const std::vector<Item>& items, std::string_view name) {
   for (size_t i = 0; i < items.size(); ++i) {
@@ -27,18 +19,6 @@ int FindByName(const std::vector<Item>& items, std::string_view name) {
 }
 
 }  // namespace
-
-std::string_view NameOf(JointType type) {
-  return kTypes[static_cast<int>(type)].name;
-}
-
-int FreedomsOf(JointType type) {
-  return kTypes[static_cast<int>(type)].freedoms;
-}
-
-int CoordinatesOf(JointType type) {
-  return type == JointType::kSpherical ? 4 : FreedomsOf(type);
-}
 
 int FindLink(const Mechanism& mechanism, std::string_view name) {
   return FindByName(mechanism.links, name);
@@ -50,6 +30,11 @@ int FindJoint(const Mechanism& mechanism, std::string_view name) {
 
 int FindGrasp(const Mechanism& mechanism, std::string_view name) {
   return FindByName(mechanism.grasps, name);
+}
+
+std::string NameOfFreedom(const Joint& joint, int freedom) {
+  if (FreedomsOf(joint.type) < 2) return joint.name;
+  return joint.name + "." + NameOfFreedom(joint.type, freedom);
 }
 
 Matrix3d AxesFromZX(const Vector3d& z, const Vector3d& x) {

@@ -6,7 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "vmech/mechanisms/pose.h"
+#include "vmech/base/pose.h"
+#include "vmech/mechanisms/joint_type.h"
 
 namespace vmech {
 
@@ -38,25 +39,6 @@ struct AnchorId {
   int link = -1;
   int anchor = -1;
 };
-
-enum class JointType {
-  kRevolute,     ///< about z
-  kPrismatic,    ///< along z
-  kCylindrical,  ///< along z, about z (independent)
-  kScrew,        ///< about z, with `pitch` along z
-  kUniversal,    ///< about x of the first anchor, then about y of the second
-  kSpherical,    ///< all three rotations
-  kPlanar,       ///< along x and y of the first anchor, then about z
-  kWeld,         ///< none
-};
-
-/// The word used in files, "revolute".
-std::string_view NameOf(JointType type);
-/// Freedoms of a joint, f = 0..3.
-int FreedomsOf(JointType type);
-/// Values in `Joint::start`: the freedoms, or 4 (a unit quaternion w, x, y, z) for a spherical
-/// joint.
-int CoordinatesOf(JointType type);
 
 /// A linear spring and the dry and viscous friction along one freedom of a joint.
 /// Generalised force on the freedom: -stiffness (q - rest) - viscous q', and dry friction, which
@@ -138,6 +120,9 @@ inline constexpr double kWidestTolerance = 0.01;  ///< of Mechanism::tolerance
 int FindLink(const Mechanism& mechanism, std::string_view name);
 int FindJoint(const Mechanism& mechanism, std::string_view name);
 int FindGrasp(const Mechanism& mechanism, std::string_view name);
+
+/// A freedom among those of a mechanism: "pin" where it is the joint's only one, else "ball.rx".
+std::string NameOfFreedom(const Joint& joint, int freedom);
 
 /// A frame from its z axis and an approximate x axis, which is made orthogonal to z.
 /// @throws std::invalid_argument if z has no length or x is parallel to z.

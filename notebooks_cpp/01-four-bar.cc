@@ -13,10 +13,12 @@
 #include <numbers>
 
 #include "notebook.h"
-#include "vmech/dynamics/load_study.h"
-#include "vmech/kinematics/assembly.h"
-#include "vmech/kinematics/mobility.h"
-#include "vmech/mechanisms/reader.h"
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/load_study.h"
+#include "vmech/dynamics/loads/run_load_study.h"
+#include "vmech/kinematics/loops/assembly.h"
+#include "vmech/kinematics/loops/mobility.h"
+#include "vmech/mechanisms/files/reader.h"
 
 using namespace vmech;
 

@@ -15,10 +15,10 @@
 #include <cmath>
 
 #include "notebook.h"
-#include "vmech/kinematics/assembly.h"
-#include "vmech/kinematics/hand_tracker.h"
-#include "vmech/kinematics/linear_algebra.h"
-#include "vmech/mechanisms/reader.h"
+#include "vmech/base/linear_algebra/linear_algebra.h"
+#include "vmech/kinematics/inverse/hand_tracker.h"
+#include "vmech/kinematics/loops/assembly.h"
+#include "vmech/mechanisms/files/reader.h"
 #include "vmech/solvers/nullspace.h"
 #include "vmech/solvers/penalty.h"
 

@@ -20,7 +20,7 @@
 #include "vmech/comparison/solve_problem.h"
 #include "vmech/comparison/statistics.h"
 #include "vmech/comparison/target_maker.h"
-#include "vmech/mechanisms/reader.h"
+#include "vmech/mechanisms/files/reader.h"
 
 using namespace vmech;
 
@@ -77,13 +77,13 @@ int main(int argc, char** argv) {
   for (const ProblemId& id : ProblemsOf(suite)) {
     Subject subject(suite.mechanisms[id.mechanism]);
     const Problem problem = make(id, &subject);
-    for (const Contestant& solver : AllContestants()) {
+    for (const SolverEntry& solver : AllContestants()) {
       if (!solver.Takes(suite.blocks[id.block])) continue;
       const Result result = SolveProblem(suite, id, problem, &subject, solver);
       if (result.verdict != Verdict::kUnavailable) results.push_back(result);
     }
   }
-  const std::vector<Contestant> solvers = SolversOf(results);
+  const std::vector<SolverEntry> solvers = SolversOf(results);
 
   //%% [markdown]
   // ## Who solves what
@@ -95,13 +95,13 @@ int main(int argc, char** argv) {
   html::Table table;
   table.columns = {{"Solver"}};
   for (const TargetBlock& block : suite.blocks) table.columns.push_back({block.name, true});
-  auto share = [&](const Contestant& solver, int block) {
+  auto share = [&](const SolverEntry& solver, int block) {
     return TallyOf(suite, results,
                    [&](const Result& r) { return r.solver == solver && r.problem.block == block; })
         .share();
   };
   double best_near = 0, best_off = 0;
-  for (const Contestant& solver : solvers) {
+  for (const SolverEntry& solver : solvers) {
     table.rows.push_back({std::string(solver.name())});
     for (int b = 0; b < 3; ++b) {
       table.rows.back().push_back(fmt::format("{:.1f} %", 100 * share(solver, b)));
@@ -119,7 +119,7 @@ int main(int argc, char** argv) {
   // measures how far). Its verdict is `biased`, and that is no fault of the program:
 
   //%%
-  const Contestant penalty(Backend::kPenalty);
+  const SolverEntry penalty(Backend::kPenalty);
   int closed = 0, biased = 0;
   for (const Result& r : results) {
     if (!(r.solver == penalty) || r.problem.block != 2) continue;
@@ -158,7 +158,7 @@ int main(int argc, char** argv) {
   //%%
   const auto missed = std::find_if(results.begin(), results.end(), [](const Result& r) {
     return r.problem.mechanism == 0 && r.verdict == Verdict::kLocalMinimum &&
-           r.solver == Contestant(Backend::kNullspace);
+           r.solver == SolverEntry(Backend::kNullspace);
   });
   notebook.Check("there is such a target", missed != results.end());
   if (missed == results.end()) return notebook.ExitCode();

@@ -16,8 +16,10 @@
 #include "notebook.h"
 #include "vmech/dynamics/bearings/catalogue.h"
 #include "vmech/dynamics/bearings/joint_bearings.h"
-#include "vmech/dynamics/load_study.h"
-#include "vmech/mechanisms/reader.h"
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/load_study.h"
+#include "vmech/dynamics/loads/run_load_study.h"
+#include "vmech/mechanisms/files/reader.h"
 
 using namespace vmech;
 

@@ -16,9 +16,11 @@
 #include "notebook.h"
 #include "vmech/dynamics/bearings/catalogue.h"
 #include "vmech/dynamics/bearings/joint_bearings.h"
-#include "vmech/dynamics/load_study.h"
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/load_study.h"
+#include "vmech/dynamics/loads/run_load_study.h"
 #include "vmech/mechanisms/cad/mechanism_from_cad.h"
-#include "vmech/mechanisms/cad/step_reader.h"
+#include "vmech/mechanisms/cad/step/step_reader.h"
 
 using namespace vmech;
 

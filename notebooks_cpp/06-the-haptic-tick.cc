@@ -13,13 +13,13 @@
 #include <numbers>
 
 #include "notebook.h"
-#include "vmech/hw_interface/coupled_tick.h"
-#include "vmech/hw_interface/coupling_choice.h"
-#include "vmech/hw_interface/mechanism_tick.h"
-#include "vmech/hw_interface/runner.h"
-#include "vmech/hw_interface/simulated_master.h"
-#include "vmech/kinematics/assembly.h"
-#include "vmech/mechanisms/reader.h"
+#include "vmech/hw_interface/loop/runner.h"
+#include "vmech/hw_interface/masters/simulated_master.h"
+#include "vmech/hw_interface/rendering/coupled_tick.h"
+#include "vmech/hw_interface/rendering/coupling_choice.h"
+#include "vmech/hw_interface/rendering/mechanism_tick.h"
+#include "vmech/kinematics/loops/assembly.h"
+#include "vmech/mechanisms/files/reader.h"
 
 using namespace vmech;
 

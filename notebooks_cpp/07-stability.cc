@@ -15,8 +15,8 @@
 #include <numbers>
 
 #include "notebook.h"
-#include "vmech/hw_interface/estimators.h"
-#include "vmech/hw_interface/stability.h"
+#include "vmech/hw_interface/estimation/estimators.h"
+#include "vmech/hw_interface/safety/stability.h"
 
 using namespace vmech;
 

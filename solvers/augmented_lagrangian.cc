@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "vmech/base/check_range.h"
 #include "vmech/solvers/run.h"
 
 namespace vmech {

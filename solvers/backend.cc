@@ -1,10 +1,10 @@
 #include "vmech/solvers/backend.h"
 
 #include "vmech/solvers/augmented_lagrangian.h"
-#include "vmech/solvers/ceres.h"
-#include "vmech/solvers/ipopt.h"
-#include "vmech/solvers/kinsol.h"
-#include "vmech/solvers/nlopt.h"
+#include "vmech/solvers/backends/ceres.h"
+#include "vmech/solvers/backends/ipopt.h"
+#include "vmech/solvers/backends/kinsol.h"
+#include "vmech/solvers/backends/nlopt.h"
 #include "vmech/solvers/nullspace.h"
 #include "vmech/solvers/penalty.h"
 

@@ -1,6 +1,6 @@
 #include "vmech/solvers/held_coordinates.h"
 
-#include "vmech/solvers/stopping_rule.h"
+#include "vmech/base/check_range.h"
 
 namespace vmech {
 

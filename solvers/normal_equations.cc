@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "vmech/solvers/small_ldlt.h"
+#include "vmech/base/linear_algebra/small_ldlt.h"
 
 namespace vmech {
 namespace {

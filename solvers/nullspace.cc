@@ -4,7 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "vmech/solvers/complete_orthogonal.h"
+#include "vmech/base/check_range.h"
+#include "vmech/base/linear_algebra/complete_orthogonal.h"
 #include "vmech/solvers/null_motions.h"
 #include "vmech/solvers/optimality.h"
 #include "vmech/solvers/run.h"

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vmech/solvers/complete_orthogonal.h"
+#include "vmech/base/linear_algebra/complete_orthogonal.h"
+#include "vmech/kinematics/loops/dimensionless_loops.h"
 
 namespace vmech {
 namespace {

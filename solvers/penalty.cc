@@ -1,5 +1,6 @@
 #include "vmech/solvers/penalty.h"
 
+#include "vmech/base/check_range.h"
 #include "vmech/solvers/run.h"
 
 namespace vmech {

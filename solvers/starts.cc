@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vmech/solvers/stopping_rule.h"
+#include "vmech/base/check_range.h"
 #include "vmech/solvers/weighted_step.h"
 
 namespace vmech {

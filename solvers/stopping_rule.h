@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string_view>
-
 namespace vmech {
 
 /// When a solve is done: the same for every back end, and measured by this module at the returned
@@ -19,10 +17,5 @@ struct StoppingRule {
   /// Throws std::invalid_argument with the name, the value and the range of what is wrong.
   void Validate() const;
 };
-
-/// Throws std::invalid_argument "<where>.<name> = <value>, must be in [low, high]" unless it is;
-/// NaN never is.
-void CheckRange(std::string_view where, std::string_view name, double value, double low,
-                double high);
 
 }  // namespace vmech

@@ -19,7 +19,7 @@ html::Tile BestTile(const ComparisonReport& report, const std::string& label,
                     const std::function<bool(const TargetBlock&)>& takes) {
   Tally best;
   std::vector<std::string> names;
-  for (const Contestant& solver : report.solvers) {
+  for (const SolverEntry& solver : report.solvers) {
     const Tally tally = TallyOf(report.suite, report.results, [&](const Result& r) {
       return r.solver == solver && takes(report.suite.blocks[r.problem.block]);
     });

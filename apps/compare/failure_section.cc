@@ -64,7 +64,7 @@ Markup Groups(const ComparisonReport& report) {
     int count = 0;
     std::set<int> mechanisms;
   };
-  std::map<std::tuple<Contestant, int, Verdict>, Group> groups;
+  std::map<std::tuple<SolverEntry, int, Verdict>, Group> groups;
   for (const Result& result : report.results) {
     if (!Failed(report, result)) continue;
     Group& group = groups[{result.solver, result.problem.block, result.verdict}];
@@ -100,7 +100,7 @@ std::vector<Markup> FailureRow(const ComparisonReport& report, const Result& r) 
 /// One folded list per solver.
 Markup Lists(const ComparisonReport& report) {
   Markup lists;
-  for (const Contestant& solver : report.solvers) {
+  for (const SolverEntry& solver : report.solvers) {
     html::Table table;
     table.columns = {{"Mechanism"},        {"Targets"},     {"No.", true}, {"Verdict"},
                      {"Iterations", true}, {"Loops", true}, {"KKT", true}, {"Reason"}};

@@ -12,7 +12,7 @@
 #include <system_error>
 
 #include "vmech/apps/compare/result_text.h"
-#include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/files/document.h"
 
 namespace vmech {
 namespace {
@@ -86,7 +86,7 @@ void Journal::Read(const Origin& origin, const Suite& suite) {
     Write(HeaderLine(origin));
     return;
   }
-  std::set<std::pair<ProblemId, Contestant>> seen;
+  std::set<std::pair<ProblemId, SolverEntry>> seen;
   int line_number = 0;
   for (size_t at = 0; at <= end;) {
     const size_t stop = text.find('\n', at);

@@ -50,15 +50,15 @@ plot::LinePlot StepPlot(std::string title, std::string x_title, double x_min, do
 }
 
 /// The fast path takes paths only, and has no place among those who take everything.
-std::vector<Contestant> BackendsOf(const ComparisonReport& report) {
-  std::vector<Contestant> solvers = report.solvers;
-  std::erase_if(solvers, [](const Contestant& solver) { return !solver.backend(); });
+std::vector<SolverEntry> BackendsOf(const ComparisonReport& report) {
+  std::vector<SolverEntry> solvers = report.solvers;
+  std::erase_if(solvers, [](const SolverEntry& solver) { return !solver.backend(); });
   return solvers;
 }
 
 Markup Profile(const ComparisonReport& report, const std::string& title, const std::string& ratio,
                const std::function<double(const Result&)>& measure) {
-  const std::vector<Contestant> solvers = BackendsOf(report);
+  const std::vector<SolverEntry> solvers = BackendsOf(report);
   const PerformanceProfile profile = MakePerformanceProfile(CostsOf(
       report.suite, report.results, solvers, [](const Result&) { return true; }, measure));
   // A whole decade, so that the axis ends at a tick.
@@ -134,7 +134,7 @@ Markup TimeSection(const ComparisonReport& report) {
   html::Table table;
   table.caption = "Median time of a solved target; of paths, per target.";
   table.columns = {{"Mechanism"}, {"coordinates", true}};
-  for (const Contestant& solver : report.solvers) {
+  for (const SolverEntry& solver : report.solvers) {
     table.columns.push_back({SolverName(solver), true});
   }
   for (size_t m = 0; m < report.suite.mechanisms.size(); ++m) {
@@ -142,7 +142,7 @@ Markup TimeSection(const ComparisonReport& report) {
     int freedoms = 0;
     for (const Joint& joint : mechanism.mechanism.joints) freedoms += FreedomsOf(joint.type);
     std::vector<Markup> row = {mechanism.name, fmt::format("{}", freedoms)};
-    for (const Contestant& solver : report.solvers) {
+    for (const SolverEntry& solver : report.solvers) {
       std::vector<double> times;
       for (const Result& r : report.results) {
         const bool counts = r.solver == solver && r.problem.mechanism == static_cast<int>(m);

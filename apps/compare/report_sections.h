@@ -14,13 +14,13 @@ namespace vmech {
 struct ComparisonReport {
   const Suite& suite;
   const std::vector<Result>& results;
-  std::vector<Contestant> solvers;
+  std::vector<SolverEntry> solvers;
 };
 
 /// "100 %" of all, else rounded down to a tenth, so that nothing less looks like it.
 std::string Percent(int part, int whole);
 /// A solver's name, which may break at its underlines.
-html::Markup SolverName(Contestant solver);
+html::Markup SolverName(SolverEntry solver);
 
 /// Per solver and block, and per mechanism.
 html::Markup SuccessSection(const ComparisonReport& report);

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "vmech/apps/csv_table.h"
+#include "vmech/studies/csv_table.h"
 
 namespace vmech {
 namespace {
@@ -58,7 +58,7 @@ std::optional<Result> ResultFromLine(std::string_view line) {
     const Json json = Json::parse(line);
     Result r;
     r.problem = {json.at("mechanism"), json.at("block"), json.at("index")};
-    const std::optional<Contestant> solver =
+    const std::optional<SolverEntry> solver =
         ContestantFromName(json.at("solver").get<std::string>());
     if (!solver) return {};
     r.solver = *solver;

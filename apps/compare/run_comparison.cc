@@ -20,13 +20,13 @@ namespace {
 /// A problem and the solvers that are still to solve it.
 struct Task {
   ProblemId problem;
-  std::vector<Contestant> solvers;
+  std::vector<SolverEntry> solvers;
 };
 
 std::string TextOf(const Task& task) {
   std::string text =
       fmt::format("{} {} {}", task.problem.mechanism, task.problem.block, task.problem.index);
-  for (const Contestant solver : task.solvers) text += fmt::format(" {}", solver.name());
+  for (const SolverEntry solver : task.solvers) text += fmt::format(" {}", solver.name());
   return text;
 }
 
@@ -50,9 +50,9 @@ bool Before(const Result& a, const Result& b) {
 /// Collects results and knows what is missing.
 class Ledger {
  public:
-  Ledger(const Suite& suite, const std::vector<Contestant>& solvers, Journal* journal)
+  Ledger(const Suite& suite, const std::vector<SolverEntry>& solvers, Journal* journal)
       : journal_(journal) {
-    std::set<std::pair<ProblemId, Contestant>> there;
+    std::set<std::pair<ProblemId, SolverEntry>> there;
     for (const Result& result : journal->found()) {
       if (std::find(solvers.begin(), solvers.end(), result.solver) == solvers.end()) continue;
       there.insert({result.problem, result.solver});
@@ -60,7 +60,7 @@ class Ledger {
     }
     for (const ProblemId& problem : ProblemsOf(suite)) {
       Task task{problem, {}};
-      for (const Contestant solver : solvers) {
+      for (const SolverEntry solver : solvers) {
         if (!solver.Takes(suite.blocks[problem.block])) continue;
         if (!there.contains({problem, solver})) task.solvers.push_back(solver);
       }
@@ -109,10 +109,10 @@ class Ledger {
 
 }  // namespace
 
-size_t RowsOf(const Suite& suite, const std::vector<Contestant>& solvers) {
+size_t RowsOf(const Suite& suite, const std::vector<SolverEntry>& solvers) {
   size_t rows = 0;
   for (const ProblemId& problem : ProblemsOf(suite)) {
-    for (const Contestant& solver : solvers) rows += solver.Takes(suite.blocks[problem.block]);
+    for (const SolverEntry& solver : solvers) rows += solver.Takes(suite.blocks[problem.block]);
   }
   return rows;
 }
@@ -125,25 +125,27 @@ Work ComparisonWork(const Suite& suite) {
     Subject& subject = subjects->try_emplace(m, suite.mechanisms[m]).first->second;
     const Problem problem =
         MakeProblem(&subject, suite.blocks[task.problem.block], SeedOfProblem(suite, task.problem));
-    for (const Contestant solver : task.solvers) {
+    for (const SolverEntry solver : task.solvers) {
       emit(ToLine(SolveProblem(suite, task.problem, problem, &subject, solver)));
     }
   };
 }
 
-std::vector<Result> RunComparison(const Suite& suite, const std::vector<Contestant>& solvers,
+std::vector<Result> RunComparison(const Suite& suite, const std::vector<SolverEntry>& solvers,
                                   const Spread& spread, Journal* journal,
                                   const std::function<void(size_t done)>& progress) {
   Ledger ledger(suite, solvers, journal);
-  Foreman foreman;
-  foreman.answer = [&](size_t task, const std::string& line) {
+  Coordinator coordinator;
+  coordinator.answer = [&](size_t task, const std::string& line) {
     const std::optional<Result> result = ResultFromLine(line);
     if (!result) throw std::logic_error("a worker answered what is not a result: " + line);
     ledger.Add(task, *result);
     progress(ledger.done());
   };
-  foreman.lost = [&](size_t task, const std::string& reason) { return ledger.Lost(task, reason); };
-  spread(ledger.Tasks(), foreman);
+  coordinator.lost = [&](size_t task, const std::string& reason) {
+    return ledger.Lost(task, reason);
+  };
+  spread(ledger.Tasks(), coordinator);
   return std::move(ledger).Sorted();
 }
 

@@ -65,7 +65,7 @@ html::Table ByBlock(const ComparisonReport& report) {
   table.caption = "Problems solved, by kind of target. Bold: all of them.";
   table.columns = {{"Solver"}};
   for (const TargetBlock& block : report.suite.blocks) table.columns.push_back({block.name, true});
-  for (const Contestant& solver : report.solvers) {
+  for (const SolverEntry& solver : report.solvers) {
     std::vector<Markup> row = {SolverName(solver)};
     for (size_t b = 0; b < report.suite.blocks.size(); ++b) {
       row.push_back(Share(TallyOf(report.suite, report.results, [&](const Result& r) {
@@ -81,12 +81,12 @@ html::Table ByMechanism(const ComparisonReport& report) {
   html::Table table;
   table.caption = "Problems solved, all kinds together, by mechanism.";
   table.columns = {{"Mechanism"}};
-  for (const Contestant& solver : report.solvers) {
+  for (const SolverEntry& solver : report.solvers) {
     table.columns.push_back({SolverName(solver), true});
   }
   for (size_t m = 0; m < report.suite.mechanisms.size(); ++m) {
     std::vector<Markup> row = {report.suite.mechanisms[m].name};
-    for (const Contestant& solver : report.solvers) {
+    for (const SolverEntry& solver : report.solvers) {
       row.push_back(Share(TallyOf(report.suite, report.results, [&](const Result& r) {
         return r.solver == solver && r.problem.mechanism == static_cast<int>(m);
       })));
@@ -106,7 +106,7 @@ html::Table Branches(const ComparisonReport& report) {
       "branch.";
   table.columns = {{"Solver"}};
   for (const TargetBlock& block : report.suite.blocks) table.columns.push_back({block.name, true});
-  for (const Contestant& solver : report.solvers) {
+  for (const SolverEntry& solver : report.solvers) {
     std::vector<Markup> row = {SolverName(solver)};
     for (size_t b = 0; b < report.suite.blocks.size(); ++b) {
       const Tally tally = TallyOf(report.suite, report.results, [&](const Result& r) {
@@ -135,7 +135,7 @@ std::string Percent(int part, int whole) {
   return fmt::format("{:.1f} %", tenths / 10);
 }
 
-Markup SolverName(Contestant solver) {
+Markup SolverName(SolverEntry solver) {
   std::string name;
   for (const char c : solver.name()) {
     name += c;

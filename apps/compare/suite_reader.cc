@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "vmech/apps/compare/digest.h"
-#include "vmech/apps/read_motion.h"
-#include "vmech/mechanisms/read_link.h"
-#include "vmech/mechanisms/reader.h"
-#include "vmech/mechanisms/units.h"
+#include "vmech/mechanisms/files/read_link.h"
+#include "vmech/mechanisms/files/reader.h"
+#include "vmech/mechanisms/files/units.h"
+#include "vmech/studies/read_motion.h"
 
 namespace vmech {
 namespace {

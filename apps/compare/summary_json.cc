@@ -14,7 +14,7 @@ Json Finite(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-Json BlockSummary(const Suite& suite, const std::vector<Result>& results, Contestant solver,
+Json BlockSummary(const Suite& suite, const std::vector<Result>& results, SolverEntry solver,
                   int block) {
   const Tally tally = TallyOf(suite, results, [&](const Result& r) {
     return r.solver == solver && r.problem.block == block;
@@ -49,7 +49,7 @@ std::string ComparisonSummary(const Suite& suite, const std::vector<Result>& res
   for (const SuiteMechanism& mechanism : suite.mechanisms) {
     json["mechanisms"].push_back(mechanism.name);
   }
-  for (const Contestant& solver : SolversOf(results)) {
+  for (const SolverEntry& solver : SolversOf(results)) {
     Json& blocks = json["solvers"][std::string(solver.name())] = Json::object();
     for (size_t b = 0; b < suite.blocks.size(); ++b) {
       blocks[suite.blocks[b].name] = BlockSummary(suite, results, solver, static_cast<int>(b));

@@ -5,14 +5,15 @@
 #include <cstdio>
 #include <list>
 
-#include "vmech/apps/check.h"
 #include "vmech/apps/commands.h"
-#include "vmech/apps/inputs_apart.h"
-#include "vmech/apps/output_folder.h"
-#include "vmech/mechanisms/document.h"
-#include "vmech/mechanisms/flow_map.h"
-#include "vmech/mechanisms/reader.h"
-#include "vmech/mechanisms/writer.h"
+#include "vmech/apps/files/inputs_apart.h"
+#include "vmech/apps/files/output_folder.h"
+#include "vmech/apps/import/importers.h"
+#include "vmech/apps/mechanism/check.h"
+#include "vmech/mechanisms/files/document.h"
+#include "vmech/mechanisms/files/flow_map.h"
+#include "vmech/mechanisms/files/reader.h"
+#include "vmech/mechanisms/files/writer.h"
 
 namespace vmech {
 namespace {
@@ -47,7 +48,7 @@ std::string MechanismText(const ImportedFile& imported, const ImportArguments& a
   WriterOptions options;
   options.units = arguments.si ? FileUnits::kMetresRadians : FileUnits::kMillimetresDegrees;
   options.comment = fmt::format("From {} ({}).", arguments.file.filename().string(),
-                                DoorFor(arguments.file).what);
+                                ImporterFor(arguments.file).what);
   for (const std::string& guess : imported.guesses) options.comment += "\nGuessed: " + guess + ".";
   return WriteMechanism(imported.mechanism, options);
 }
@@ -119,7 +120,7 @@ int RunImport(ImportArguments arguments) {
   if (ending != ".yaml" && ending != ".yml") {
     throw FileErrors(arguments.out.string(), "a mechanism is written as .yaml");
   }
-  const ImportDoor& door = DoorFor(arguments.file);
+  const Importer& door = ImporterFor(arguments.file);
   RequireOptionsFit(arguments);
   RequireFilesApart(arguments);
   const ImportedFile imported = door.read(arguments);

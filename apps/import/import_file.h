@@ -1,14 +1,13 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "vmech/mechanisms/cad/mechanism_from_cad.h"
-#include "vmech/mechanisms/cad/step_reader.h"
+#include "vmech/mechanisms/cad/step/step_reader.h"
 #include "vmech/mechanisms/mechanism.h"
 
 namespace vmech {
@@ -44,17 +43,6 @@ struct ImportedFile {
   std::map<std::string, std::string> meshes;  ///< by link: binary STL
   std::vector<std::string> doubts = {};       ///< beside those of the mechanism: densities
 };
-
-/// A kind of file that can be read, by the endings of its name (".urdf").
-struct ImportDoor {
-  std::vector<std::string_view> endings;
-  std::string_view what;
-  std::function<ImportedFile(const ImportArguments&)> read;
-};
-const std::vector<ImportDoor>& ImportDoors();
-
-/// The door of a file. @throws FileErrors if its ending is none that is known.
-const ImportDoor& DoorFor(const std::filesystem::path& file);
 
 /// The ending of a name, ".step", in small letters.
 std::string EndingOf(const std::filesystem::path& file);

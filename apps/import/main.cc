@@ -9,10 +9,10 @@
 #include <stdexcept>
 
 #include "vmech/apps/commands.h"
+#include "vmech/apps/console/printable_streams.h"
 #include "vmech/apps/import/import_command.h"
-#include "vmech/apps/printable_streams.h"
-#include "vmech/mechanisms/cad/frame_name.h"
-#include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/cad/step/frame_name.h"
+#include "vmech/mechanisms/files/document.h"
 
 namespace vmech {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "vmech/mechanisms/cad/cad_assembly.h"
+#include "vmech/mechanisms/cad/step/cad_assembly.h"
 
 namespace vmech {
 

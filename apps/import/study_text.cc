@@ -7,8 +7,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "vmech/mechanisms/document.h"
-#include "vmech/mechanisms/flow_map.h"
+#include "vmech/mechanisms/files/document.h"
+#include "vmech/mechanisms/files/flow_map.h"
 
 namespace vmech {
 namespace {

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "vmech/mechanisms/number_text.h"
+#include "vmech/base/number_text.h"
 
 namespace vmech::plot {
 

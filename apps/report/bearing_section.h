@@ -1,7 +1,7 @@
 #pragma once
 
 #include "vmech/apps/html/markup.h"
-#include "vmech/apps/study.h"
+#include "vmech/studies/study.h"
 
 namespace vmech {
 

@@ -7,7 +7,8 @@
 
 #include "vmech/apps/html/page.h"
 #include "vmech/apps/plot/scale.h"
-#include "vmech/dynamics/open_components.h"
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/open_components.h"
 
 namespace vmech {
 namespace {

@@ -6,10 +6,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "vmech/apps/dead_centres.h"
-#include "vmech/apps/read_motion.h"
+#include "vmech/apps/loads/dead_centres.h"
 #include "vmech/apps/report/certainty_words.h"
+#include "vmech/dynamics/loads/load_result.h"
 #include "vmech/mechanisms/freedoms.h"
+#include "vmech/studies/read_motion.h"
 
 namespace vmech {
 namespace {

@@ -5,7 +5,8 @@
 
 #include "vmech/apps/plot/line_plot.h"
 #include "vmech/apps/plot/polar_plot.h"
-#include "vmech/dynamics/load_study.h"
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/load_study.h"
 
 namespace vmech {
 

@@ -4,7 +4,8 @@
 
 #include "vmech/apps/html/markup.h"
 #include "vmech/apps/report/cycle.h"
-#include "vmech/dynamics/load_study.h"
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/load_study.h"
 
 namespace vmech {
 

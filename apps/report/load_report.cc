@@ -8,12 +8,13 @@
 
 #include "vmech/apps/html/page.h"
 #include "vmech/apps/plot/style.h"
-#include "vmech/apps/read_motion.h"
 #include "vmech/apps/report/bearing_section.h"
 #include "vmech/apps/report/certainty_words.h"
 #include "vmech/apps/report/cycle.h"
 #include "vmech/apps/report/joint_section.h"
+#include "vmech/dynamics/loads/load_result.h"
 #include "vmech/mechanisms/freedoms.h"
+#include "vmech/studies/read_motion.h"
 
 namespace vmech {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "vmech/apps/study.h"
+#include "vmech/studies/study.h"
 
 namespace vmech {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "vmech/mechanisms/pose.h"
+#include "vmech/base/pose.h"
 
 namespace vmech {
 

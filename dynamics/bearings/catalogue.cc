@@ -13,7 +13,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/files/document.h"
 
 namespace vmech {
 

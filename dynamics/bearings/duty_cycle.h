@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "vmech/mechanisms/pose.h"
+#include "vmech/base/pose.h"
 
 namespace vmech {
 

@@ -7,8 +7,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "vmech/base/number_text.h"
 #include "vmech/dynamics/bearings/rating_life.h"
-#include "vmech/mechanisms/number_text.h"
 
 namespace vmech {
 namespace {

@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/files/document.h"
 
 namespace vmech {
 namespace {

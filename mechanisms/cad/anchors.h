@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "vmech/mechanisms/cad/bodies.h"
-#include "vmech/mechanisms/cad/frame_name.h"
+#include "vmech/mechanisms/cad/step/frame_name.h"
 
 namespace vmech {
 

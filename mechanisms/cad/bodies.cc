@@ -7,8 +7,8 @@
 #include <map>
 #include <set>
 
-#include "vmech/mechanisms/cad/frame_name.h"
-#include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/cad/step/frame_name.h"
+#include "vmech/mechanisms/files/document.h"
 
 namespace vmech {
 namespace {

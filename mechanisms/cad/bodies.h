@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "vmech/mechanisms/cad/cad_assembly.h"
 #include "vmech/mechanisms/cad/contacts.h"
+#include "vmech/mechanisms/cad/step/cad_assembly.h"
 
 namespace vmech {
 

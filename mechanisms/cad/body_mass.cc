@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/files/document.h"
 #include "vmech/mechanisms/mass_properties.h"
 
 namespace vmech {

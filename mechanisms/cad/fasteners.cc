@@ -8,7 +8,7 @@
 #include <optional>
 #include <tuple>
 
-#include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/files/document.h"
 
 namespace vmech {
 namespace {

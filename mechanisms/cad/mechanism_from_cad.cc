@@ -12,7 +12,7 @@
 #include "vmech/mechanisms/cad/anchors.h"
 #include "vmech/mechanisms/cad/joint_fit.h"
 #include "vmech/mechanisms/cad/tidy.h"
-#include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/files/document.h"
 #include "vmech/mechanisms/graph.h"
 
 namespace vmech {

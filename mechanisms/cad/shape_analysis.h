@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "vmech/mechanisms/cad/cad_assembly.h"
+#include "vmech/mechanisms/cad/step/cad_assembly.h"
 
 class TopoDS_Shape;
 class gp_Trsf;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "vmech/mechanisms/cad/cad_assembly.h"
+#include "vmech/mechanisms/cad/step/cad_assembly.h"
 
 namespace vmech {
 

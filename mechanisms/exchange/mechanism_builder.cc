@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "vmech/mechanisms/exchange/mended_inertia.h"
-#include "vmech/mechanisms/reader.h"
-#include "vmech/mechanisms/writer.h"
+#include "vmech/mechanisms/files/reader.h"
+#include "vmech/mechanisms/files/writer.h"
 
 namespace vmech {
 namespace {

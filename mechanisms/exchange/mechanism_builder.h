@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "vmech/mechanisms/document.h"
 #include "vmech/mechanisms/exchange/imported.h"
+#include "vmech/mechanisms/files/document.h"
 
 namespace vmech {
 

@@ -6,7 +6,7 @@
 
 #include "vmech/mechanisms/exchange/mjcf.h"
 #include "vmech/mechanisms/exchange/start_pose.h"
-#include "vmech/mechanisms/exchange/xml_text.h"
+#include "vmech/mechanisms/exchange/xml/xml_text.h"
 #include "vmech/mechanisms/freedoms.h"
 #include "vmech/mechanisms/mass_properties.h"
 

@@ -1,4 +1,4 @@
-#include "vmech/apps/csv_table.h"
+#include "vmech/studies/csv_table.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "vmech/apps/dh_text.h"
+#include "vmech/apps/mechanism/dh_text.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "vmech/apps/output_folder.h"
+#include "vmech/apps/files/output_folder.h"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 
 #include "support/temp_folder.h"
-#include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/files/document.h"
 
 namespace vmech {
 namespace {

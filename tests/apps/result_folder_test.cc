@@ -1,4 +1,4 @@
-#include "vmech/apps/result_folder.h"
+#include "vmech/apps/files/result_folder.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -8,7 +8,7 @@
 #include <set>
 
 #include "support/temp_folder.h"
-#include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/files/document.h"
 
 namespace vmech {
 namespace {

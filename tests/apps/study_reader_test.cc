@@ -1,4 +1,4 @@
-#include "vmech/apps/study_reader.h"
+#include "vmech/studies/study_reader.h"
 
 #include <gtest/gtest.h>
 

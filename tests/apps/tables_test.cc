@@ -1,4 +1,5 @@
-#include "vmech/apps/tables.h"
+#include "vmech/apps/loads/tables.h"
+#include "vmech/dynamics/loads/load_result.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include "vmech/mechanisms/reader.h"
+#include "vmech/mechanisms/files/reader.h"
 
 namespace vmech {
 namespace {

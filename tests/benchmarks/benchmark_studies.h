@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vmech/dynamics/load_study.h"
+#include "vmech/dynamics/loads/load_study.h"
 
 namespace vmech {
 

@@ -3,7 +3,7 @@
 #include <stdexcept>
 
 #include "benchmark_studies.h"
-#include "vmech/kinematics/assembly.h"
+#include "vmech/kinematics/loops/assembly.h"
 
 namespace vmech {
 

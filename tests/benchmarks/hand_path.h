@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "vmech/kinematics/inverse_kinematics.h"
+#include "vmech/kinematics/inverse/inverse_kinematics.h"
 
 namespace vmech {
 

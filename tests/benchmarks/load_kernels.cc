@@ -4,8 +4,10 @@
 
 #include "benchmark_studies.h"
 #include "kernels.h"
-#include "vmech/dynamics/load_model.h"
-#include "vmech/kinematics/packet.h"
+#include "vmech/base/packet.h"
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/prepare_study.h"
+#include "vmech/dynamics/loads/track_motion.h"
 
 namespace vmech {
 namespace {

@@ -3,7 +3,8 @@
 #include <benchmark/benchmark.h>
 
 #include "benchmark_studies.h"
-#include "vmech/dynamics/load_study.h"
+#include "vmech/dynamics/loads/load_study.h"
+#include "vmech/dynamics/loads/run_load_study.h"
 
 namespace vmech {
 namespace {

@@ -1,7 +1,7 @@
 #include <array>
 
 #include "benchmark_statistics.h"
-#include "vmech/mechanisms/pose.h"
+#include "vmech/base/pose.h"
 
 namespace vmech {
 namespace {

@@ -1,7 +1,7 @@
 #include <array>
 
 #include "kernels.h"
-#include "vmech/mechanisms/pose.h"
+#include "vmech/base/pose.h"
 
 namespace vmech {
 namespace {

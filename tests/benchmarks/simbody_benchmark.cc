@@ -11,6 +11,9 @@
 #include "benchmark_studies.h"
 #include "simbody_model.h"
 
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/run_load_study.h"
+
 namespace vmech {
 namespace {
 

@@ -25,9 +25,9 @@ struct OneBlock {
     suite.repetitions = 1;
   }
   Result Solve(uint64_t seed, Backend backend = Backend::kNullspace) {
-    return Solve(seed, Contestant(backend));
+    return Solve(seed, SolverEntry(backend));
   }
-  Result Solve(uint64_t seed, Contestant solver) {
+  Result Solve(uint64_t seed, SolverEntry solver) {
     Subject subject(suite.mechanisms[0]);
     const Problem problem = MakeProblem(&subject, suite.blocks[0], seed);
     return SolveProblem(suite, {}, problem, &subject, solver);
@@ -93,7 +93,7 @@ TEST(SolveProblem, FollowsAPathThroughADeadCentre) {
 
 TEST(SolveProblem, FollowsAPathByTheFastPath) {
   OneBlock one("stewart-gough", Block(TargetKind::kTracking));
-  const Result result = one.Solve(3, Contestant::FastPath());
+  const Result result = one.Solve(3, SolverEntry::FastPath());
   EXPECT_EQ(result.verdict, Verdict::kSolved) << result.message;
   EXPECT_EQ(result.reached, 20);
   EXPECT_LE(result.e2, one.suite.stopping.constraint_tolerance);
@@ -125,8 +125,8 @@ TEST(SolveProblem, FollowsPathsThatLeaveFreedomsUnseen) {
   for (const auto& [example, grasp] : kUnseen) {
     OneBlock one(example, Block(TargetKind::kTracking), grasp);
     for (uint64_t seed = 0; seed < 4; ++seed) {
-      for (const Contestant& solver :
-           {Contestant::FastPath(), Contestant(Backend::kAugmentedLagrangian)}) {
+      for (const SolverEntry& solver :
+           {SolverEntry::FastPath(), SolverEntry(Backend::kAugmentedLagrangian)}) {
         const Result result = one.Solve(seed, solver);
         EXPECT_EQ(result.verdict, Verdict::kSolved)
             << example << " by " << solver.name() << ": " << result.message;
@@ -152,7 +152,7 @@ TEST(SolveProblem, TellsTheBranchWhateverWayARodHasSpun) {
     ik.SetTarget(problem.targets[0]);
     const Summary summary = Solve(Backend::kNullspace, ik, {}, problem.start);
     const Result result =
-        SolveProblem(one.suite, {}, problem, &subject, Contestant(Backend::kNullspace));
+        SolveProblem(one.suite, {}, problem, &subject, SolverEntry(Backend::kNullspace));
     if (result.verdict != Verdict::kSolved) continue;
     const double off =
         std::abs(std::remainder(summary.x[crank] - problem.own[0][crank], 2 * std::numbers::pi));

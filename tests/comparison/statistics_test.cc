@@ -17,7 +17,7 @@ Suite TwoBlocks() {
 Result Of(int block, int index, Backend solver, Verdict verdict, double time = 1) {
   Result result;
   result.problem = {0, block, index};
-  result.solver = Contestant(solver);
+  result.solver = SolverEntry(solver);
   result.verdict = verdict;
   result.time = time;
   return result;

@@ -4,8 +4,8 @@
 
 #include "support/examples.h"
 #include "vmech/comparison/closed_walk.h"
-#include "vmech/kinematics/closure.h"
-#include "vmech/kinematics/configuration_distance.h"
+#include "vmech/kinematics/inverse/configuration_distance.h"
+#include "vmech/kinematics/loops/closure.h"
 #include "vmech/solvers/optimality.h"
 
 namespace vmech {

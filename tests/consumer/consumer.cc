@@ -8,16 +8,18 @@
 #include <memory>
 #include <vector>
 
-#include "vmech/dynamics/coupled_dynamics.h"
-#include "vmech/dynamics/hand_dynamics.h"
-#include "vmech/dynamics/load_study.h"
-#include "vmech/hw_interface/coupled_tick.h"
-#include "vmech/hw_interface/hand_observer.h"
-#include "vmech/hw_interface/loop_clock.h"
-#include "vmech/hw_interface/mechanism_tick.h"
-#include "vmech/hw_interface/runner.h"
-#include "vmech/hw_interface/simulated_master.h"
-#include "vmech/kinematics/hand_tracker.h"
+#include "vmech/dynamics/in_hand/coupled_dynamics.h"
+#include "vmech/dynamics/in_hand/hand_dynamics.h"
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/load_study.h"
+#include "vmech/dynamics/loads/run_load_study.h"
+#include "vmech/hw_interface/estimation/hand_observer.h"
+#include "vmech/hw_interface/loop/loop_clock.h"
+#include "vmech/hw_interface/loop/runner.h"
+#include "vmech/hw_interface/masters/simulated_master.h"
+#include "vmech/hw_interface/rendering/coupled_tick.h"
+#include "vmech/hw_interface/rendering/mechanism_tick.h"
+#include "vmech/kinematics/inverse/hand_tracker.h"
 
 namespace {
 

@@ -8,6 +8,9 @@
 
 #include "driven_examples.h"
 
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/run_load_study.h"
+
 namespace vmech {
 namespace {
 

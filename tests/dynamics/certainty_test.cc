@@ -1,4 +1,4 @@
-#include "vmech/dynamics/certainty.h"
+#include "vmech/dynamics/reactions/certainty.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,11 @@
 
 #include "driven_examples.h"
 #include "free_bodies.h"
-#include "vmech/dynamics/load_model.h"
-#include "vmech/kinematics/mobility.h"
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/prepare_study.h"
+#include "vmech/dynamics/loads/run_load_study.h"
+#include "vmech/dynamics/loads/track_motion.h"
+#include "vmech/kinematics/loops/mobility.h"
 
 namespace vmech {
 namespace {

@@ -1,4 +1,4 @@
-#include "vmech/dynamics/coupled_dynamics.h"
+#include "vmech/dynamics/in_hand/coupled_dynamics.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "support/examples.h"
-#include "vmech/dynamics/hand_dynamics.h"
+#include "vmech/dynamics/in_hand/hand_dynamics.h"
 
 namespace vmech {
 namespace {

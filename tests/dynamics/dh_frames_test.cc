@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
 #include "driven_examples.h"
-#include "vmech/mechanisms/denavit_hartenberg.h"
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/run_load_study.h"
+#include "vmech/mechanisms/dh/denavit_hartenberg.h"
 
 namespace vmech {
 namespace {

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "support/examples.h"
-#include "vmech/dynamics/load_study.h"
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/load_study.h"
 
 namespace vmech {
 

@@ -8,7 +8,9 @@
 
 #include "driven_examples.h"
 #include "free_bodies.h"
-#include "vmech/dynamics/study_plausibility.h"
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/run_load_study.h"
+#include "vmech/dynamics/loads/study_plausibility.h"
 
 namespace vmech {
 namespace {

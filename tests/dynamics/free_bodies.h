@@ -3,7 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "vmech/dynamics/load_study.h"
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/load_study.h"
 
 namespace vmech {
 

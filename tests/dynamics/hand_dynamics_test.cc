@@ -1,14 +1,16 @@
-#include "vmech/dynamics/hand_dynamics.h"
+#include "vmech/dynamics/in_hand/hand_dynamics.h"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
 #include "support/examples.h"
-#include "vmech/dynamics/load_study.h"
-#include "vmech/kinematics/assembly.h"
-#include "vmech/kinematics/forward_kinematics.h"
-#include "vmech/kinematics/jacobian.h"
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/load_study.h"
+#include "vmech/dynamics/loads/run_load_study.h"
+#include "vmech/kinematics/loops/assembly.h"
+#include "vmech/kinematics/tree/forward_kinematics.h"
+#include "vmech/kinematics/tree/jacobian.h"
 
 namespace vmech {
 namespace {
@@ -118,7 +120,7 @@ TEST_P(EveryHeldExample, PowerOfTheHandIsTheRateOfTheEnergy) {
   constexpr double kStep = 1e-4;  // a third of it leaves rounding, three times curvature
   const auto energy_at = [&](double t) {
     VectorXd q = held_.q;
-    Integrate(held_.tree, t * v + 0.5 * t * t * vdot, &q);
+    MoveCoordinates(held_.tree, t * v + 0.5 * t * t * vdot, &q);
     TreeWorkspace<double> ws(held_.tree);
     ForwardKinematics(held_.tree, q.data(), &ws);
     Matrix6Xd J_t(6, held_.tree.nv);

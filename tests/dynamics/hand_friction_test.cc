@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "one_joint.h"
-#include "vmech/dynamics/coupled_dynamics.h"
-#include "vmech/dynamics/hand_dynamics.h"
+#include "vmech/dynamics/in_hand/coupled_dynamics.h"
+#include "vmech/dynamics/in_hand/hand_dynamics.h"
 
 namespace vmech {
 namespace {

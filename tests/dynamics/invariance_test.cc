@@ -9,6 +9,9 @@
 #include "driven_examples.h"
 #include "free_bodies.h"
 
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/run_load_study.h"
+
 namespace vmech {
 namespace {
 

@@ -1,4 +1,4 @@
-#include "vmech/dynamics/load_study.h"
+#include "vmech/dynamics/loads/load_study.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,8 +7,11 @@
 #include <cstring>
 
 #include "driven_examples.h"
-#include "vmech/dynamics/load_model.h"
-#include "vmech/kinematics/packet.h"
+#include "vmech/base/packet.h"
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/prepare_study.h"
+#include "vmech/dynamics/loads/run_load_study.h"
+#include "vmech/dynamics/loads/track_motion.h"
 
 namespace vmech {
 namespace {

@@ -1,4 +1,4 @@
-#include "vmech/dynamics/newton_euler.h"
+#include "vmech/dynamics/rigid_body/newton_euler.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "support/examples.h"
-#include "vmech/kinematics/closure.h"
-#include "vmech/kinematics/forward_kinematics.h"
+#include "vmech/kinematics/loops/closure.h"
+#include "vmech/kinematics/tree/forward_kinematics.h"
 
 namespace vmech {
 namespace {
@@ -87,7 +87,7 @@ TEST_P(EveryTree, BiasAtRestIsTheSlopeOfThePotentialEnergy) {
   for (int k = 0; k < tree_.nv; ++k) {
     auto energy = [&](double step) {
       VectorXd moved = q_;
-      Integrate(tree_, step * VectorXd::Unit(tree_.nv, k), &moved);
+      MoveCoordinates(tree_, step * VectorXd::Unit(tree_.nv, k), &moved);
       return PotentialEnergy(moved);
     };
     const double slope = (energy(kStep) - energy(-kStep)) / (2 * kStep);
@@ -103,7 +103,7 @@ TEST_P(EveryTree, PowerOfTheBiasIsHalfTheRateOfTheMassMatrix) {
       v_.dot(BiasForces(tree_, q_, v_) - BiasForces(tree_, q_, VectorXd::Zero(tree_.nv)));
   auto twice_energy = [&](double t) {
     VectorXd moved = q_;
-    Integrate(tree_, t * v_, &moved);
+    MoveCoordinates(tree_, t * v_, &moved);
     return v_.dot(MassMatrix(tree_, moved) * v_);
   };
   const double slope = (twice_energy(kStep) - twice_energy(-kStep)) / (4 * kStep);

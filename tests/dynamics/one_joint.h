@@ -3,7 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "vmech/dynamics/load_study.h"
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/load_study.h"
+#include "vmech/dynamics/loads/run_load_study.h"
 
 namespace vmech {
 

@@ -1,4 +1,6 @@
-#include "vmech/dynamics/passive.h"
+#include "vmech/dynamics/rigid_body/passive.h"
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/run_load_study.h"
 
 #include <gtest/gtest.h>
 

@@ -1,13 +1,15 @@
 // The sanitizers bring an allocator of theirs.
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 
-#include "vmech/dynamics/pose_loads.h"
+#include "vmech/dynamics/loads/pose/pose_loads.h"
 
 #include <gtest/gtest.h>
 
 #include "driven_examples.h"
 #include "support/count_allocations.h"
-#include "vmech/dynamics/load_model.h"
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/prepare_study.h"
+#include "vmech/dynamics/loads/track_motion.h"
 
 namespace vmech {
 namespace {

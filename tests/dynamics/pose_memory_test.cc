@@ -1,25 +1,26 @@
-#include "vmech/dynamics/pose_memory.h"
+#include "vmech/dynamics/loads/pose/pose_arena.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdint>
 #include <optional>
 
-#include "vmech/dynamics/load_study.h"
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/load_study.h"
 
 namespace vmech {
 namespace {
 
-TEST(PoseMemory, GivesPiecesThatDoNotOverlap) {
-  PoseMemory memory(PoseMemory::Rounded(24) + PoseMemory::Rounded(8));
+TEST(PoseArena, GivesPiecesThatDoNotOverlap) {
+  PoseArena memory(PoseArena::Rounded(24) + PoseArena::Rounded(8));
   auto* a = static_cast<std::byte*>(memory.Take(24));
   auto* b = static_cast<std::byte*>(memory.Take(8));
   EXPECT_GE(std::abs(b - a), 24);
   EXPECT_EQ(reinterpret_cast<std::uintptr_t>(b) % 16, 0u);
 }
 
-TEST(PoseMemory, GivesMoreThanItWasMadeFor) {
-  PoseMemory memory(16);
+TEST(PoseArena, GivesMoreThanItWasMadeFor) {
+  PoseArena memory(16);
   memory.Take(16);
   auto* more = static_cast<double*>(memory.Take(1000 * sizeof(double)));
   for (int i = 0; i < 1000; ++i) more[i] = i;
@@ -27,7 +28,7 @@ TEST(PoseMemory, GivesMoreThanItWasMadeFor) {
 }
 
 TEST(PoseLoads, CopyOutlivesTheResultItIsTakenFrom) {
-  std::optional<PoseMemory> memory(PoseLoads::Size(1, 2, 3));
+  std::optional<PoseArena> memory(PoseLoads::Size(1, 2, 3));
   PoseLoads copy;
   {
     PoseLoads pose(&*memory);

@@ -1,6 +1,6 @@
 // The rules for what statics leaves open, against elastic joints and least norms on free bodies.
 
-#include "vmech/dynamics/reactions.h"
+#include "vmech/dynamics/reactions/reactions.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,9 @@
 
 #include "driven_examples.h"
 #include "free_bodies.h"
-#include "vmech/dynamics/load_model.h"
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/prepare_study.h"
+#include "vmech/dynamics/loads/run_load_study.h"
 
 namespace vmech {
 namespace {

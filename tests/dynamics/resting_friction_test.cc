@@ -1,4 +1,6 @@
-#include "vmech/dynamics/resting_friction.h"
+#include "vmech/dynamics/loads/pose/resting_friction.h"
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/run_load_study.h"
 
 #include <gmock/gmock.h>
 

@@ -9,10 +9,12 @@
 #include <stdexcept>
 
 #include "driven_examples.h"
-#include "vmech/dynamics/coupled_dynamics.h"
-#include "vmech/dynamics/hand_dynamics.h"
-#include "vmech/dynamics/load_model.h"
-#include "vmech/kinematics/assembled_mechanism.h"
+#include "vmech/dynamics/in_hand/coupled_dynamics.h"
+#include "vmech/dynamics/in_hand/hand_dynamics.h"
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/prepare_study.h"
+#include "vmech/dynamics/loads/run_load_study.h"
+#include "vmech/kinematics/loops/assembled_mechanism.h"
 
 namespace vmech {
 namespace {

@@ -7,7 +7,9 @@
 
 #include "driven_examples.h"
 #include "support/rounded.h"
-#include "vmech/kinematics/mobility.h"
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/run_load_study.h"
+#include "vmech/kinematics/loops/mobility.h"
 
 namespace vmech {
 namespace {

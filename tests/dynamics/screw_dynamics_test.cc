@@ -1,15 +1,15 @@
-#include "vmech/dynamics/screw_dynamics.h"
+#include "vmech/dynamics/rigid_body/screw_dynamics.h"
 
 #include <gtest/gtest.h>
 
 #include "support/examples.h"
-#include "vmech/dynamics/held_pose.h"
-#include "vmech/dynamics/newton_euler.h"
-#include "vmech/kinematics/assembly.h"
-#include "vmech/kinematics/forward_kinematics.h"
-#include "vmech/kinematics/linear_algebra.h"
-#include "vmech/kinematics/loops.h"
-#include "vmech/kinematics/screw_algebra.h"
+#include "vmech/base/linear_algebra/linear_algebra.h"
+#include "vmech/base/screw_algebra.h"
+#include "vmech/dynamics/in_hand/grasped_mechanism.h"
+#include "vmech/dynamics/rigid_body/newton_euler.h"
+#include "vmech/kinematics/loops/assembly.h"
+#include "vmech/kinematics/loops/loops.h"
+#include "vmech/kinematics/tree/forward_kinematics.h"
 
 namespace vmech {
 namespace {
@@ -28,7 +28,7 @@ class EveryTreeInScrews : public testing::TestWithParam<std::string> {
         v_(random_.Vector(tree_.nv)),
         vdot_(random_.Vector(tree_.nv)) {
     EXPECT_TRUE(Assemble(tree_, {}, &q_).closed);
-    FallUpwards(tree_.mechanism.gravity_W, &ws_);
+    SetGravity(tree_.mechanism.gravity_W, &ws_);
   }
 
   void SetPose(const VectorXd& q) {
@@ -50,7 +50,7 @@ class EveryTreeInScrews : public testing::TestWithParam<std::string> {
   VectorXd SomePose() { return RandomCoordinates(tree_, &random_); }
   /// As the tick has them.
   MatrixXd LoopRows(const VectorXd& q) {
-    HeldPose pose(tree_, GraspFrame{});
+    GraspedMechanism pose(tree_, GraspFrame{});
     pose.Set(q);
     return pose.C().topRows(tree_.rows);
   }
@@ -166,7 +166,7 @@ TEST_P(EveryCutJoint, HasTheSameRows) {
   ForwardKinematics(tree, q.data(), &reference);
   LoopErrors(tree, &reference);
   LoopJacobian(tree, &reference);
-  HeldPose pose(tree, GraspFrame{});
+  GraspedMechanism pose(tree, GraspFrame{});
   pose.Set(q);
   const VectorXd scale = LoopRowScale(tree);
   const MatrixXd C = scale.asDiagonal() * DenseLoopJacobian(tree, reference);

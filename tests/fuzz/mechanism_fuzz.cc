@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "vmech/mechanisms/reader.h"
+#include "vmech/mechanisms/files/reader.h"
 
 namespace {
 

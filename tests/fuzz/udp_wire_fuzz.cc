@@ -5,7 +5,7 @@
 #include <cstring>
 #include <vector>
 
-#include "vmech/hw_interface/udp_wire.h"
+#include "vmech/hw_interface/remote/udp_wire.h"
 
 namespace {
 

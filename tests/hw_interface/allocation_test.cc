@@ -9,9 +9,9 @@
 #include "hw_interface/tick_input.h"
 #include "support/count_allocations.h"
 #include "support/examples.h"
-#include "vmech/hw_interface/coupled_tick.h"
-#include "vmech/hw_interface/runner.h"
-#include "vmech/hw_interface/simulated_master.h"
+#include "vmech/hw_interface/loop/runner.h"
+#include "vmech/hw_interface/masters/simulated_master.h"
+#include "vmech/hw_interface/rendering/coupled_tick.h"
 
 namespace vmech {
 namespace {
@@ -70,7 +70,7 @@ TEST(CoupledTick, AllocatesNothingWhileItsHandLeadsItSlipsAndLetsGo) {
     for (int k = 0; k < 2000; ++k) {
       input.X_WH.p.x() += 1e-4 * std::sin(0.01 * k);
       input.held = k % 500 < 400;
-      if (k % 500 == 0) tick.TakeHold(input.X_WH);
+      if (k % 500 == 0) tick.GraspAt(input.X_WH);
       ASSERT_NE(tick.Step(input, channels).status, TickStatus::kFailed);
     }
     EXPECT_EQ(allocations - before, 0) << name;

@@ -1,11 +1,11 @@
-#include "vmech/hw_interface/arm_model.h"
+#include "vmech/hw_interface/arm/arm_model.h"
 
 #include <gtest/gtest.h>
 
 #include "support/examples.h"
-#include "vmech/dynamics/newton_euler.h"
-#include "vmech/hw_interface/sarcos_arm.h"
-#include "vmech/kinematics/closure.h"
+#include "vmech/dynamics/rigid_body/newton_euler.h"
+#include "vmech/hw_interface/arm/sarcos_arm.h"
+#include "vmech/kinematics/loops/closure.h"
 
 namespace vmech {
 namespace {

@@ -1,4 +1,4 @@
-#include "vmech/hw_interface/coupled_tick.h"
+#include "vmech/hw_interface/rendering/coupled_tick.h"
 
 #include <gtest/gtest.h>
 
@@ -8,16 +8,16 @@
 #include "hw_interface/free_motion.h"
 #include "hw_interface/tick_input.h"
 #include "support/examples.h"
-#include "vmech/dynamics/hand_dynamics.h"
-#include "vmech/dynamics/newton_euler.h"
-#include "vmech/hw_interface/coupling_choice.h"
-#include "vmech/hw_interface/runner.h"
-#include "vmech/hw_interface/simulated_master.h"
-#include "vmech/kinematics/forward_kinematics.h"
-#include "vmech/kinematics/jacobian.h"
-#include "vmech/kinematics/linear_algebra.h"
-#include "vmech/kinematics/loops.h"
-#include "vmech/kinematics/rotation_error.h"
+#include "vmech/base/linear_algebra/linear_algebra.h"
+#include "vmech/base/rotation_error.h"
+#include "vmech/dynamics/in_hand/hand_dynamics.h"
+#include "vmech/dynamics/rigid_body/newton_euler.h"
+#include "vmech/hw_interface/loop/runner.h"
+#include "vmech/hw_interface/masters/simulated_master.h"
+#include "vmech/hw_interface/rendering/coupling_choice.h"
+#include "vmech/kinematics/loops/loops.h"
+#include "vmech/kinematics/tree/forward_kinematics.h"
+#include "vmech/kinematics/tree/jacobian.h"
 
 namespace vmech {
 namespace {
@@ -113,7 +113,7 @@ TEST(CoupledTick, TakesHoldOfTheNearestLinkWhereTheHandIs) {
     const Posed X_WL = held.tick->dynamics().pose().X_WB(node) * held.tree.X_node_link(link);
     Posed X_WH = X_WL;
     X_WH.p = X_WL * (0.5 * (anchors[0].X_LA.p + anchors[1].X_LA.p)) + Vector3d(0, 0, 0.01);
-    ASSERT_TRUE(held.tick->TakeHold(X_WH));
+    ASSERT_TRUE(held.tick->GraspAt(X_WH));
     EXPECT_EQ(held.tick->dynamics().pose().grasp().node, node) << name;
     EXPECT_LT((held.tick->GraspFrame().p - X_WH.p).norm(), 1e-12);
     EXPECT_LT(held.Step(X_WH).F_Ho_W.norm(), 1e-9);
@@ -187,7 +187,7 @@ std::complex<double> FeltOverTrueInertia(const std::string& name, double hertz) 
   const KinematicTree tree = BuildKinematicTree(mechanism);
   const VectorXd q = ClosedStart(tree);
   const GraspFrame grasp = GraspFrameOf(tree, FindGrasp(mechanism, "handle"));
-  HeldPose pose(tree, grasp);
+  GraspedMechanism pose(tree, grasp);
   pose.Set(q);
   constexpr double kRank = 1e-9;
   const MatrixXd N = tree.loops.empty() ? MatrixXd(MatrixXd::Identity(tree.nv, tree.nv))

@@ -1,4 +1,4 @@
-#include "vmech/hw_interface/estimators.h"
+#include "vmech/hw_interface/estimation/estimators.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "vmech/hw_interface/plugin.h"
+#include "vmech/hw_interface/masters/plugin.h"
 
 struct device {
   double force[3];

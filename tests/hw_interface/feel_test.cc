@@ -9,11 +9,13 @@
 #include "hw_interface/free_motion.h"
 #include "hw_interface/tick_input.h"
 #include "support/examples.h"
-#include "vmech/dynamics/load_study.h"
-#include "vmech/hw_interface/coupled_tick.h"
-#include "vmech/hw_interface/coupling_choice.h"
-#include "vmech/hw_interface/simulated_master.h"
-#include "vmech/kinematics/assembly.h"
+#include "vmech/dynamics/loads/load_study.h"
+#include "vmech/dynamics/loads/run_load_study.h"
+#include "vmech/hw_interface/masters/simulated_master.h"
+#include "vmech/hw_interface/rendering/coupled_tick.h"
+#include "vmech/hw_interface/rendering/coupling_choice.h"
+#include "vmech/kinematics/loops/assembly.h"
+#include "vmech/kinematics/tree/forward_kinematics.h"
 
 namespace vmech {
 namespace {
@@ -83,7 +85,7 @@ struct Held {
 
 /// Of all links, and of springs in the tree's joints.
 double PotentialEnergy(const KinematicTree& tree, const VectorXd& q) {
-  HeldPose pose(tree, GraspFrame{});
+  GraspedMechanism pose(tree, GraspFrame{});
   pose.Set(q);
   double energy = 0;
   for (size_t i = 0; i < tree.nodes.size(); ++i) {
@@ -104,7 +106,7 @@ VectorXd EnergyGradient(const KinematicTree& tree, const VectorXd& q, const Matr
   for (int i = 0; i < N.cols(); ++i) {
     const auto at = [&](double steps) {
       VectorXd there = q;
-      Integrate(tree, steps * kStep * N.col(i), &there);
+      MoveCoordinates(tree, steps * kStep * N.col(i), &there);
       EXPECT_TRUE(Assemble(tree, {}, &there).closed);
       return PotentialEnergy(tree, there);
     };
@@ -122,7 +124,7 @@ TEST_P(EveryHeldExample, HandAtRestFeelsExactlyTheGravityShare) {
   const Vector6d w = held.RestingWrench(held.tick.GraspFrame());
   const VectorXd& q = held.tick.dynamics().q();
   const MatrixXd N = FreeVelocities(held.tree, q);
-  HeldPose pose(held.tree, held.frame);
+  GraspedMechanism pose(held.tree, held.frame);
   pose.Set(q);
   const VectorXd felt = (pose.J() * N).transpose() * w;
   const VectorXd share = EnergyGradient(held.tree, q, N);
@@ -142,7 +144,7 @@ TEST_P(EveryHeldExample, HandAtRestFeelsWhatTheLoadStudyOfThatPoseSays) {
   study.times = {0};
   study.rule = ReactionRule::kMinimumNorm;
   const Vector6d w_study = RunLoadStudy(study).poses[0].hand.Stacked();
-  HeldPose pose(held.tree, held.frame);
+  GraspedMechanism pose(held.tree, held.frame);
   pose.Set(held.tick.dynamics().q());
   const MatrixXd JN = pose.J() * FreeVelocities(held.tree, held.tick.dynamics().q());
   constexpr double kExact = 1e-6;
@@ -177,7 +179,7 @@ TEST_P(EveryOneFreedomExample, FreeMotionFeelsNoConstraint) {
   Held held(Feather(Example(GetParam())), options);
   constexpr double kStroke = 0.025;
   const FreeMotion motion(held.tree, held.frame, held.q, kStroke + 0.005);
-  HeldPose pose(held.tree, held.frame);
+  GraspedMechanism pose(held.tree, held.frame);
   double most = 0;
   for (int k = 0; k < 2000; ++k) {
     Posed X_WH = motion.At(kStroke * std::sin(2 * std::numbers::pi * k * kPeriod)).X_WH;

@@ -3,11 +3,12 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "vmech/dynamics/held_pose.h"
-#include "vmech/dynamics/newton_euler.h"
-#include "vmech/kinematics/assembly.h"
-#include "vmech/kinematics/linear_algebra.h"
-#include "vmech/kinematics/loops.h"
+#include "vmech/base/linear_algebra/linear_algebra.h"
+#include "vmech/dynamics/in_hand/grasped_mechanism.h"
+#include "vmech/dynamics/rigid_body/newton_euler.h"
+#include "vmech/kinematics/loops/assembly.h"
+#include "vmech/kinematics/loops/loops.h"
+#include "vmech/kinematics/tree/forward_kinematics.h"
 
 namespace vmech {
 namespace {
@@ -21,7 +22,7 @@ void Close(const KinematicTree& tree, VectorXd* q) {
 
 /// dq/ds, in the sense of `before`.
 VectorXd Tangent(const KinematicTree& tree, const VectorXd& q, const VectorXd& before,
-                 HeldPose* pose) {
+                 GraspedMechanism* pose) {
   const MatrixXd N = FreeVelocities(tree, q);
   const VectorXd way = N * (N.transpose() * before);
   pose->Set(q);
@@ -34,14 +35,14 @@ VectorXd Tangent(const KinematicTree& tree, const VectorXd& q, const VectorXd& b
 MatrixXd FreeVelocities(const KinematicTree& tree, const VectorXd& q) {
   constexpr double kRank = 1e-9;
   if (tree.loops.empty()) return MatrixXd::Identity(tree.nv, tree.nv);
-  HeldPose pose(tree, GraspFrame{});
+  GraspedMechanism pose(tree, GraspFrame{});
   pose.Set(q);
   return FindNullSpace(pose.C(), kRank).basis;
 }
 
 FreeMotion::FreeMotion(const KinematicTree& tree, const GraspFrame& grasp, const VectorXd& q,
                        double reach) {
-  HeldPose pose(tree, grasp);
+  GraspedMechanism pose(tree, grasp);
   const int steps = static_cast<int>(std::ceil(reach / kStep));
   const VectorXd start = FreeVelocities(tree, q).col(0);
   std::vector<double> way(2 * steps + 1), inertia(2 * steps + 1);
@@ -56,10 +57,10 @@ FreeMotion::FreeMotion(const KinematicTree& tree, const GraspFrame& grasp, const
       inertia[row] = tangent.dot(MassMatrix(tree, here) * tangent);
       // The midpoint rule; the pose stays on the track, s is good to 1e-6 of it.
       VectorXd middle = here;
-      Integrate(tree, 0.5 * kStep * tangent, &middle);
+      MoveCoordinates(tree, 0.5 * kStep * tangent, &middle);
       Close(tree, &middle);
       tangent = Tangent(tree, middle, tangent, &pose);
-      Integrate(tree, kStep * tangent, &here);
+      MoveCoordinates(tree, kStep * tangent, &here);
       Close(tree, &here);
       tangent = Tangent(tree, here, tangent, &pose);
     }

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "vmech/kinematics/inverse_kinematics.h"
-#include "vmech/kinematics/motion_law.h"
+#include "vmech/kinematics/inverse/inverse_kinematics.h"
+#include "vmech/kinematics/motion/motion_law.h"
 
 namespace vmech {
 

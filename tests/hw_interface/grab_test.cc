@@ -4,9 +4,9 @@
 
 #include "hw_interface/tick_input.h"
 #include "support/examples.h"
-#include "vmech/hw_interface/coupled_tick.h"
-#include "vmech/hw_interface/coupling_choice.h"
-#include "vmech/hw_interface/simulated_master.h"
+#include "vmech/hw_interface/masters/simulated_master.h"
+#include "vmech/hw_interface/rendering/coupled_tick.h"
+#include "vmech/hw_interface/rendering/coupling_choice.h"
 
 namespace vmech {
 namespace {
@@ -61,7 +61,7 @@ TEST_P(EveryGrab, GrowsNoFasterThanItsRateHoweverFastTheLink) {
     Throw(&random);
     Posed X_WH = tick_->GraspFrame();
     X_WH.p += random.Vector(3, 0.05);
-    ASSERT_TRUE(tick_->TakeHold(X_WH));
+    ASSERT_TRUE(tick_->GraspAt(X_WH));
     fastest = std::max(fastest, tick_->dynamics().V_WG().head<3>().norm());
     Vector3d last = Vector3d::Zero();
     for (int k = 0; k < 120; ++k) {

@@ -1,13 +1,13 @@
-#include "vmech/hw_interface/hand_observer.h"
+#include "vmech/hw_interface/estimation/hand_observer.h"
 
 #include <gtest/gtest.h>
 
 #include "hw_interface/tick_input.h"
 #include "support/examples.h"
-#include "vmech/hw_interface/coupled_tick.h"
-#include "vmech/hw_interface/coupling_choice.h"
-#include "vmech/hw_interface/runner.h"
-#include "vmech/hw_interface/simulated_master.h"
+#include "vmech/hw_interface/loop/runner.h"
+#include "vmech/hw_interface/masters/simulated_master.h"
+#include "vmech/hw_interface/rendering/coupled_tick.h"
+#include "vmech/hw_interface/rendering/coupling_choice.h"
 
 namespace vmech {
 namespace {

@@ -2,9 +2,9 @@
 
 #include "hw_interface/tick_input.h"
 #include "support/examples.h"
-#include "vmech/hw_interface/coupling_choice.h"
-#include "vmech/hw_interface/simulated_master.h"
-#include "vmech/hw_interface/stability.h"
+#include "vmech/hw_interface/masters/simulated_master.h"
+#include "vmech/hw_interface/rendering/coupling_choice.h"
+#include "vmech/hw_interface/safety/stability.h"
 
 namespace vmech {
 namespace {
@@ -111,7 +111,7 @@ void HeldTick::Resolve() {
 
 /// The hand of the samples goes its way whatever it feels: as if the arm exerted nothing.
 void HeldTick::ObserveOn(const MasterState& state) {
-  if (!tick_->TakesObserved()) return;
+  if (!tick_->UsesObservedHand()) return;
   observer_->Update(state, Vector6d::Zero(), 1);
   registration_.TakeHandInWorld(observer_->hand_D(), &observed_);
 }
@@ -121,7 +121,7 @@ void HeldTick::StepOn(const MasterState& state) {
   input.fresh = true;
   input.elapsed = device_.period;
   input.state = &state;
-  if (tick_->TakesObserved()) {
+  if (tick_->UsesObservedHand()) {
     input.observed = &observed_;
   } else {
     input.X_WH = registration_.HandInWorld(state.X_DH);

@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "vmech/hw_interface/arm_torques.h"
-#include "vmech/hw_interface/coupled_tick.h"
-#include "vmech/hw_interface/hand_observer.h"
-#include "vmech/hw_interface/mechanism_tick.h"
-#include "vmech/hw_interface/nonblocking.h"
-#include "vmech/hw_interface/safety_filter.h"
+#include "vmech/base/nonblocking.h"
+#include "vmech/hw_interface/estimation/hand_observer.h"
+#include "vmech/hw_interface/loop/arm_torques.h"
+#include "vmech/hw_interface/rendering/coupled_tick.h"
+#include "vmech/hw_interface/rendering/mechanism_tick.h"
+#include "vmech/hw_interface/safety/safety_filter.h"
 
 namespace vmech {
 

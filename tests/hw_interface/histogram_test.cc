@@ -1,4 +1,4 @@
-#include "vmech/hw_interface/histogram.h"
+#include "vmech/hw_interface/loop/histogram.h"
 
 #include <gtest/gtest.h>
 

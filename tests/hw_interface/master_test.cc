@@ -1,4 +1,4 @@
-#include "vmech/hw_interface/master.h"
+#include "vmech/hw_interface/masters/master.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "vmech/hw_interface/mechanism_tick.h"
+#include "vmech/hw_interface/rendering/mechanism_tick.h"
 #include "hw_interface/tick_input.h"
 
 #include <gtest/gtest.h>
@@ -6,12 +6,13 @@
 #include <numbers>
 
 #include "support/examples.h"
-#include "vmech/hw_interface/coupling_choice.h"
-#include "vmech/hw_interface/runner.h"
-#include "vmech/hw_interface/simulated_master.h"
-#include "vmech/hw_interface/stability.h"
-#include "vmech/kinematics/assembly.h"
-#include "vmech/kinematics/rotation_error.h"
+#include "vmech/base/rotation_error.h"
+#include "vmech/hw_interface/loop/runner.h"
+#include "vmech/hw_interface/masters/simulated_master.h"
+#include "vmech/hw_interface/rendering/coupling_choice.h"
+#include "vmech/hw_interface/safety/stability.h"
+#include "vmech/kinematics/loops/assembly.h"
+#include "vmech/kinematics/tree/forward_kinematics.h"
 
 namespace vmech {
 namespace {
@@ -99,7 +100,7 @@ TEST(MechanismTick, FreeMotionFeelsNoConstraint) {
   ASSERT_TRUE(dynamics.Evaluate(Vector6d::Ones(), Vector6d::Zero()));
   VectorXd q = held.tick.q();
   constexpr double kStep = 1e-6;
-  Integrate(held.tree, kStep * dynamics.v(), &q);
+  MoveCoordinates(held.tree, kStep * dynamics.v(), &q);
   const Vector6d V = HandError(X_WG, dynamics.SetPose(q)) / kStep;
   EXPECT_LT(std::abs(w_c.dot(V)), 1e-5 * w_c.norm() * V.norm());
 }

@@ -1,4 +1,4 @@
-#include "vmech/hw_interface/plugin_master.h"
+#include "vmech/hw_interface/masters/plugin_master.h"
 
 #include <gtest/gtest.h>
 

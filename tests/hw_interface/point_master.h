@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "vmech/hw_interface/master.h"
+#include "vmech/hw_interface/masters/master.h"
 
 namespace vmech {
 

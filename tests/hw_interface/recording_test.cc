@@ -1,4 +1,4 @@
-#include "vmech/hw_interface/recording.h"
+#include "vmech/hw_interface/loop/recording.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "support/temp_folder.h"
-#include "vmech/hw_interface/replay_master.h"
+#include "vmech/hw_interface/loop/replay_master.h"
 
 namespace vmech {
 namespace {

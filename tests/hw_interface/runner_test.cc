@@ -1,10 +1,10 @@
-#include "vmech/hw_interface/runner.h"
+#include "vmech/hw_interface/loop/runner.h"
 
 #include <gtest/gtest.h>
 
 #include "hw_interface/point_master.h"
 #include "support/temp_folder.h"
-#include "vmech/hw_interface/simulated_master.h"
+#include "vmech/hw_interface/masters/simulated_master.h"
 
 namespace vmech {
 namespace {

@@ -1,4 +1,4 @@
-#include "vmech/hw_interface/safety_filter.h"
+#include "vmech/hw_interface/safety/safety_filter.h"
 
 #include <gtest/gtest.h>
 
@@ -66,7 +66,7 @@ TEST_F(Chain, LatchesWhatIsNotANumber) {
   broken[4] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(Apply(&filter, broken).off, ForceOff::kNonFinite);
   EXPECT_EQ(Apply(&filter, push_).off, ForceOff::kNonFinite);
-  filter.Rearm();
+  filter.Unlatch();
   EXPECT_EQ(Apply(&filter, push_).off, ForceOff::kNone);
   EXPECT_EQ(filter.counters().trips, 1u);
 }
@@ -81,11 +81,11 @@ TEST_F(Chain, EmergencyStopStaysUntilRearmedAndReleased) {
   SafetyFilter filter(Bare(), SmallDevice());
   state_.emergency_stop = true;
   EXPECT_EQ(Apply(&filter, push_).off, ForceOff::kEmergencyStop);
-  filter.Rearm();
+  filter.Unlatch();
   EXPECT_EQ(Apply(&filter, push_).off, ForceOff::kEmergencyStop);
   state_.emergency_stop = false;
   EXPECT_EQ(Apply(&filter, push_).off, ForceOff::kEmergencyStop);
-  filter.Rearm();
+  filter.Unlatch();
   EXPECT_EQ(Apply(&filter, push_).off, ForceOff::kNone);
 }
 

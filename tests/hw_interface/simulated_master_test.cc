@@ -1,4 +1,4 @@
-#include "vmech/hw_interface/simulated_master.h"
+#include "vmech/hw_interface/masters/simulated_master.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "vmech/hw_interface/spacenav_master.h"
+#include "vmech/hw_interface/masters/spacenav_master.h"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>

@@ -1,4 +1,4 @@
-#include "vmech/hw_interface/stability.h"
+#include "vmech/hw_interface/safety/stability.h"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 
 #include <cstdlib>
 
-#include "vmech/hw_interface/tick.h"
-#include "vmech/kinematics/assembly.h"
+#include "vmech/hw_interface/rendering/tick.h"
+#include "vmech/kinematics/loops/assembly.h"
 
 namespace vmech {
 

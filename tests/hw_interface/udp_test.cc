@@ -6,7 +6,7 @@
 
 #include "hw_interface/point_master.h"
 #include "support/examples.h"
-#include "vmech/hw_interface/udp_server.h"
+#include "vmech/hw_interface/remote/udp_server.h"
 
 namespace vmech {
 namespace {

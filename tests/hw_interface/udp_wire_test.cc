@@ -1,4 +1,4 @@
-#include "vmech/hw_interface/udp_wire.h"
+#include "vmech/hw_interface/remote/udp_wire.h"
 
 #include <gtest/gtest.h>
 

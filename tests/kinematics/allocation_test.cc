@@ -7,7 +7,7 @@
 
 #include "support/count_allocations.h"
 #include "support/examples.h"
-#include "vmech/kinematics/hand_tracker.h"
+#include "vmech/kinematics/inverse/hand_tracker.h"
 
 namespace vmech {
 namespace {

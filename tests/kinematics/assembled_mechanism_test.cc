@@ -1,13 +1,13 @@
-#include "vmech/kinematics/assembled_mechanism.h"
+#include "vmech/kinematics/loops/assembled_mechanism.h"
 
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 
 #include "support/rounded.h"
-#include "vmech/kinematics/closure.h"
-#include "vmech/kinematics/loops.h"
-#include "vmech/kinematics/mobility.h"
+#include "vmech/kinematics/loops/closure.h"
+#include "vmech/kinematics/loops/loops.h"
+#include "vmech/kinematics/loops/mobility.h"
 
 namespace vmech {
 namespace {

@@ -1,4 +1,4 @@
-#include "vmech/kinematics/assembly_modes.h"
+#include "vmech/kinematics/inverse/assembly_modes.h"
 
 #include <gtest/gtest.h>
 

@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "support/examples.h"
-#include "vmech/kinematics/closure.h"
-#include "vmech/kinematics/forward_kinematics.h"
-#include "vmech/kinematics/jacobian.h"
-#include "vmech/kinematics/loops.h"
+#include "vmech/kinematics/loops/closure.h"
+#include "vmech/kinematics/loops/loops.h"
+#include "vmech/kinematics/tree/forward_kinematics.h"
+#include "vmech/kinematics/tree/jacobian.h"
 
 namespace vmech {
 namespace {
@@ -20,7 +20,7 @@ class EveryExample : public testing::TestWithParam<std::string> {
 
   VectorXd Moved(const VectorXd& q, const VectorXd& v, double t) const {
     VectorXd moved = q;
-    Integrate(tree_, t * v, &moved);
+    MoveCoordinates(tree_, t * v, &moved);
     return moved;
   }
 
@@ -73,7 +73,7 @@ TEST_P(EveryExample, AccelerationIsTheDerivativeOfTheTwist) {
   auto twist = [&](double t) -> Vector6d {
     // Along q(t) = q (+) (v t + vdot t^2/2), whose velocity at small t is v + vdot t.
     VectorXd moved = q;
-    Integrate(tree_, v * t + vdot * (t * t / 2), &moved);
+    MoveCoordinates(tree_, v * t + vdot * (t * t / 2), &moved);
     EvaluatePose(tree_, moved, &ws_, false);
     const VectorXd rate = v + vdot * t;
     ForwardVelocities(tree_, rate.data(), &ws_);

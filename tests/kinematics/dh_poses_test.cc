@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "support/examples.h"
-#include "vmech/kinematics/forward_kinematics.h"
-#include "vmech/mechanisms/denavit_hartenberg.h"
+#include "vmech/kinematics/tree/forward_kinematics.h"
+#include "vmech/mechanisms/dh/denavit_hartenberg.h"
 
 namespace vmech {
 namespace {

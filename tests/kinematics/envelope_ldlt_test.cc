@@ -1,4 +1,4 @@
-#include "vmech/kinematics/envelope_ldlt.h"
+#include "vmech/base/linear_algebra/envelope_ldlt.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Hands that lead mechanisms along paths, through dead centres, to limits and out of reach.
 
-#include "vmech/kinematics/hand_tracker.h"
+#include "vmech/kinematics/inverse/hand_tracker.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,10 @@
 #include <utility>
 
 #include "support/examples.h"
-#include "vmech/kinematics/assembly_modes.h"
-#include "vmech/kinematics/mobility.h"
-#include "vmech/kinematics/unseen_motions.h"
+#include "vmech/kinematics/inverse/assembly_modes.h"
+#include "vmech/kinematics/loops/mobility.h"
+#include "vmech/kinematics/loops/unseen_motions.h"
+#include "vmech/kinematics/tree/forward_kinematics.h"
 #include "vmech/solvers/nullspace.h"
 
 namespace vmech {
@@ -60,7 +61,7 @@ std::vector<VectorXd> Motion(const KinematicTree& tree, const VectorXd& q_start,
     VectorXd dq = VectorXd::Zero(tree.nv), q = motion.back();
     double rate = 0.006;  // [rad], of each characteristic length
     for (int v : partition.driven) dq[v] = rate * std::cos(0.02 * k) * std::min(1.0, tree.length);
-    Integrate(tree, dq, &q);
+    MoveCoordinates(tree, dq, &q);
     if (!Assemble(tree, options, &q).closed) break;
     motion.push_back(q);
   }
@@ -233,7 +234,7 @@ TEST(HandTracker, HoldsALinkageWhoseRodSpinsAsOneWhoseRodDoesNot) {
   for (const double spin : {0.0, 0.7, 2.0, -1.3}) {
     VectorXd q = spinning.q;
     InverseKinematics problem(spinning.tree, spinning.grasp);
-    Integrate(spinning.tree, spin * FindUnseenMotions(&problem, q).basis.col(0), &q);
+    MoveCoordinates(spinning.tree, spin * FindUnseenMotions(&problem, q).basis.col(0), &q);
     ASSERT_TRUE(Assemble(spinning.tree, {}, &q).closed);
     HandTracker reference(pinned.tree, pinned.grasp, pinned.q);
     HandTracker tracker(spinning.tree, spinning.grasp, q);

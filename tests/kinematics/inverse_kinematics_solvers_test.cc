@@ -7,11 +7,11 @@
 #include <cmath>
 
 #include "support/examples.h"
-#include "vmech/kinematics/forward_kinematics.h"
-#include "vmech/kinematics/inverse_kinematics.h"
-#include "vmech/kinematics/jacobian.h"
-#include "vmech/kinematics/linear_algebra.h"
-#include "vmech/kinematics/loops.h"
+#include "vmech/base/linear_algebra/linear_algebra.h"
+#include "vmech/kinematics/inverse/inverse_kinematics.h"
+#include "vmech/kinematics/loops/loops.h"
+#include "vmech/kinematics/tree/forward_kinematics.h"
+#include "vmech/kinematics/tree/jacobian.h"
 #include "vmech/solvers/augmented_lagrangian.h"
 #include "vmech/solvers/backend.h"
 #include "vmech/solvers/nullspace.h"

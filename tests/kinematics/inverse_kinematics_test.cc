@@ -1,14 +1,14 @@
 // The mechanism as a problem: derivatives against central differences, signs and units.
 
-#include "vmech/kinematics/inverse_kinematics.h"
+#include "vmech/kinematics/inverse/inverse_kinematics.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 
 #include "support/examples.h"
-#include "vmech/kinematics/forward_kinematics.h"
-#include "vmech/kinematics/loops.h"
+#include "vmech/kinematics/loops/loops.h"
+#include "vmech/kinematics/tree/forward_kinematics.h"
 
 namespace vmech {
 namespace {
@@ -85,7 +85,7 @@ TEST(InverseKinematics, DerivativesAreThoseOfTheErrorsForEveryCutJointWhereTheLo
     InverseKinematics problem(tree, grasp);
     for (int i = 0; i < 10; ++i) {
       VectorXd q = StartCoordinates(tree);
-      Integrate(tree, random.Vector(tree.nv, 1.5), &q);
+      MoveCoordinates(tree, random.Vector(tree.nv, 1.5), &q);
       problem.SetTarget(RandomPose(&random));
       ExpectDerivatives(problem, q, &random);
     }

@@ -1,10 +1,10 @@
-#include "vmech/kinematics/loop_clusters.h"
+#include "vmech/kinematics/loops/loop_clusters.h"
 
 #include <gtest/gtest.h>
 
 #include "support/examples.h"
-#include "vmech/kinematics/closure.h"
-#include "vmech/kinematics/mobility.h"
+#include "vmech/kinematics/loops/closure.h"
+#include "vmech/kinematics/loops/mobility.h"
 
 namespace vmech {
 namespace {

@@ -1,4 +1,4 @@
-#include "vmech/kinematics/motion_law.h"
+#include "vmech/kinematics/motion/motion_law.h"
 
 #include <gtest/gtest.h>
 

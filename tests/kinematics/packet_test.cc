@@ -1,4 +1,4 @@
-#include "vmech/kinematics/packet.h"
+#include "vmech/base/packet.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "vmech/kinematics/rotation_error.h"
+#include "vmech/base/rotation_error.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "vmech/kinematics/table_dwells.h"
+#include "vmech/kinematics/motion/table_dwells.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "vmech/kinematics/motion_law.h"
+#include "vmech/kinematics/motion/motion_law.h"
 
 namespace vmech {
 namespace {

@@ -1,6 +1,6 @@
 // Freedoms that neither a hand nor the loops see: rods that spin, an elbow that circles.
 
-#include "vmech/kinematics/unseen_motions.h"
+#include "vmech/kinematics/loops/unseen_motions.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,9 @@
 #include <utility>
 
 #include "support/examples.h"
-#include "vmech/kinematics/assembly_modes.h"
-#include "vmech/kinematics/configuration_distance.h"
+#include "vmech/kinematics/inverse/assembly_modes.h"
+#include "vmech/kinematics/inverse/configuration_distance.h"
+#include "vmech/kinematics/tree/forward_kinematics.h"
 #include "vmech/solvers/optimality.h"
 
 namespace vmech {
@@ -78,7 +79,7 @@ TEST(NearestAlongUnseen, TurnsSpinningRodsBack) {
     const MatrixXd spins = FindUnseenMotions(&held.problem, held.q).basis;
     for (const double angle : {0.1, 1.0, 2.5}) {
       VectorXd spun = held.q;
-      Integrate(held.tree, spins * VectorXd::Constant(spins.cols(), angle), &spun);
+      MoveCoordinates(held.tree, spins * VectorXd::Constant(spins.cols(), angle), &spun);
       ASSERT_TRUE(Assemble(held.tree, {}, &spun).closed);
       ASSERT_GT(ConfigurationDistance(held.tree, spun, held.q), 0.9 * angle);
       const VectorXd back = NearestAlongUnseen(&held.problem, spun, held.q);
@@ -95,7 +96,7 @@ TEST(NearestAlongUnseen, LeadsAnElbowRoundItsCircle) {
   for (int i = 0; i < 25; ++i) {
     const VectorXd n = FindUnseenMotions(&held.problem, circled).basis.col(0);
     VectorXd ahead = circled;
-    Integrate(held.tree, 0.1 * n * (n[2] > 0 ? 1 : -1), &ahead);
+    MoveCoordinates(held.tree, 0.1 * n * (n[2] > 0 ? 1 : -1), &ahead);
     circled = NearestAlongUnseen(&held.problem, circled, ahead, 1);
   }
   EXPECT_LT((held.problem.GraspPose(circled).p - X_WG.p).norm(), 1e-9);
@@ -134,7 +135,7 @@ TEST(ConfigurationDistance, IsReachedByTheDifferenceInAUnitOfTime) {
     const VectorXd a = RandomCoordinates(tree, &random, 1), b = RandomCoordinates(tree, &random, 1);
     const VectorXd difference = ConfigurationDifference(tree, a, b);
     VectorXd there = a;
-    Integrate(tree, TangentScale(tree).cwiseProduct(difference), &there);
+    MoveCoordinates(tree, TangentScale(tree).cwiseProduct(difference), &there);
     EXPECT_LT(ConfigurationDistance(tree, there, b), kBack);
     EXPECT_NEAR(difference.norm(), ConfigurationDistance(tree, b, a), kBack);
   }

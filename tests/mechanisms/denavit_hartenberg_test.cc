@@ -1,4 +1,4 @@
-#include "vmech/mechanisms/denavit_hartenberg.h"
+#include "vmech/mechanisms/dh/denavit_hartenberg.h"
 
 #include <gtest/gtest.h>
 

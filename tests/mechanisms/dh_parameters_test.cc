@@ -1,4 +1,4 @@
-#include "vmech/mechanisms/dh_parameters.h"
+#include "vmech/mechanisms/dh/dh_parameters.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/files/document.h"
 
 #include <gtest/gtest.h>
 

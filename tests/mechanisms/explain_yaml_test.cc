@@ -1,8 +1,8 @@
-#include "vmech/mechanisms/explain_yaml.h"
+#include "vmech/mechanisms/files/explain_yaml.h"
 
 #include <gtest/gtest.h>
 
-#include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/files/document.h"
 
 namespace vmech {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "slider_crank.h"
-#include "vmech/mechanisms/reader.h"
+#include "vmech/mechanisms/files/reader.h"
 
 namespace vmech {
 namespace {

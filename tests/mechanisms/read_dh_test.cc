@@ -1,4 +1,4 @@
-#include "vmech/mechanisms/read_dh.h"
+#include "vmech/mechanisms/files/read_dh.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <string>
 
 #include "support/examples.h"
-#include "vmech/mechanisms/denavit_hartenberg.h"
-#include "vmech/mechanisms/dh_parameters.h"
-#include "vmech/mechanisms/reader.h"
+#include "vmech/mechanisms/dh/denavit_hartenberg.h"
+#include "vmech/mechanisms/dh/dh_parameters.h"
+#include "vmech/mechanisms/files/reader.h"
 
 namespace vmech {
 namespace {

@@ -1,4 +1,4 @@
-#include "vmech/mechanisms/reader.h"
+#include "vmech/mechanisms/files/reader.h"
 
 #include <gtest/gtest.h>
 

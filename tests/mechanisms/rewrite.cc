@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "vmech/mechanisms/reader.h"
-#include "vmech/mechanisms/writer.h"
+#include "vmech/mechanisms/files/reader.h"
+#include "vmech/mechanisms/files/writer.h"
 
 int main(int count, char** arguments) {
   const std::filesystem::path folder = arguments[1];

@@ -1,4 +1,4 @@
-#include "vmech/mechanisms/units.h"
+#include "vmech/mechanisms/files/units.h"
 
 #include <gtest/gtest.h>
 

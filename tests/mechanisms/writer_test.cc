@@ -1,4 +1,4 @@
-#include "vmech/mechanisms/writer.h"
+#include "vmech/mechanisms/files/writer.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 
 #include "same_mechanism.h"
 #include "support/examples.h"
+#include "vmech/mechanisms/files/reader.h"
 #include "vmech/mechanisms/freedoms.h"
 #include "vmech/mechanisms/mass_properties.h"
-#include "vmech/mechanisms/reader.h"
 
 namespace vmech {
 namespace {

@@ -12,9 +12,10 @@
 
 #include "support/examples.h"
 #include "support/temp_folder.h"
-#include "vmech/dynamics/load_study.h"
-#include "vmech/kinematics/forward_kinematics.h"
-#include "vmech/kinematics/loops.h"
+#include "vmech/dynamics/loads/load_study.h"
+#include "vmech/dynamics/loads/run_load_study.h"
+#include "vmech/kinematics/loops/loops.h"
+#include "vmech/kinematics/tree/forward_kinematics.h"
 #include "vmech/mechanisms/exchange/mjcf.h"
 
 namespace vmech {

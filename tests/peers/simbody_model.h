@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "vmech/dynamics/loads/load_result.h"
 #include "vmech/mechanisms/mechanism.h"
 
 namespace vmech::peers {

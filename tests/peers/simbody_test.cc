@@ -4,8 +4,10 @@
 #include <string>
 
 #include "simbody_model.h"
-#include "vmech/dynamics/load_study.h"
-#include "vmech/mechanisms/reader.h"
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/load_study.h"
+#include "vmech/dynamics/loads/run_load_study.h"
+#include "vmech/mechanisms/files/reader.h"
 
 namespace vmech {
 namespace {

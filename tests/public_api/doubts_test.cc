@@ -8,8 +8,9 @@
 #include <numbers>
 
 #include "support/examples.h"
-#include "vmech/dynamics/study_plausibility.h"
-#include "vmech/kinematics/table_roughness.h"
+#include "vmech/dynamics/loads/run_load_study.h"
+#include "vmech/dynamics/loads/study_plausibility.h"
+#include "vmech/kinematics/motion/table_roughness.h"
 #include "vmech/mechanisms/plausibility.h"
 
 namespace vmech {

@@ -4,6 +4,9 @@
 
 #include "reference_case.h"
 
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/run_load_study.h"
+
 namespace vmech::reference {
 namespace {
 

@@ -4,7 +4,8 @@
 #include <numbers>
 
 #include "reference_case.h"
-#include "vmech/dynamics/paper_joint.h"
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/pose/paper_joint.h"
 
 namespace vmech::reference {
 namespace {

@@ -2,7 +2,9 @@
 
 #include <stdexcept>
 
-#include "vmech/dynamics/load_model.h"
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/prepare_study.h"
+#include "vmech/dynamics/loads/run_load_study.h"
 
 namespace vmech::reference {
 namespace {

@@ -2,6 +2,9 @@
 
 #include "reference_case.h"
 
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/run_load_study.h"
+
 namespace vmech::reference {
 namespace {
 

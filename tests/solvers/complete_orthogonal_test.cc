@@ -1,4 +1,5 @@
-#include "vmech/solvers/complete_orthogonal.h"
+#include "vmech/base/linear_algebra/complete_orthogonal.h"
+#include "vmech/kinematics/loops/dimensionless_loops.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "vmech/solvers/kinsol.h"
+#include "vmech/solvers/backends/kinsol.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "vmech/solvers/saddle_system.h"
+#include "vmech/base/linear_algebra/saddle_system.h"
 
 #include <gtest/gtest.h>
 
@@ -43,7 +43,7 @@ TEST_P(EverySize, SolutionFulfilsBothEquationsWithRedundantRows) {
   ASSERT_TRUE(s_.saddle.Factor(s_.A));
   s_.saddle.Solve(s_.A, s_.C, s_.b, s_.d, &x_);
   VectorXd mu(s_.C.rows());
-  s_.saddle.TakeMultipliers(s_.C, s_.d, &mu);
+  s_.saddle.ComputeMultipliers(s_.C, s_.d, &mu);
   EXPECT_LT((s_.A * x_ + s_.C.transpose() * mu - s_.b).norm(), kRounding * s_.b.norm());
   EXPECT_LT((s_.C * x_ - s_.d).norm(), kRounding * s_.d.norm());
 }
@@ -53,7 +53,7 @@ TEST_P(EverySize, MultipliersAreTheSmallest) {
   ASSERT_TRUE(s_.saddle.Factor(s_.A));
   s_.saddle.Solve(s_.A, s_.C, s_.b, s_.d, &x_);
   VectorXd mu(s_.C.rows());
-  s_.saddle.TakeMultipliers(s_.C, s_.d, &mu);
+  s_.saddle.ComputeMultipliers(s_.C, s_.d, &mu);
   const VectorXd smallest =
       s_.C.transpose().completeOrthogonalDecomposition().solve(s_.b - s_.A * x_);
   EXPECT_LT((mu - smallest).norm(), kRounding * smallest.norm());

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "vmech/kinematics/assembly.h"
-#include "vmech/kinematics/kinematic_tree.h"
-#include "vmech/mechanisms/reader.h"
+#include "vmech/kinematics/loops/assembly.h"
+#include "vmech/kinematics/tree/kinematic_tree.h"
+#include "vmech/mechanisms/files/reader.h"
 
 namespace vmech {
 
@@ -76,7 +76,7 @@ class Random {
 /// A coordinate vector near the start values, whether the loops are closed or not.
 inline VectorXd RandomCoordinates(const KinematicTree& tree, Random* random, double size = 0.3) {
   VectorXd q = StartCoordinates(tree);
-  Integrate(tree, random->Vector(tree.nv, size), &q);
+  MoveCoordinates(tree, random->Vector(tree.nv, size), &q);
   return q;
 }
 

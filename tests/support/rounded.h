@@ -5,7 +5,7 @@
 #include <string>
 
 #include "support/examples.h"
-#include "vmech/kinematics/assembled_mechanism.h"
+#include "vmech/kinematics/loops/assembled_mechanism.h"
 
 namespace vmech {
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "vmech/mechanisms/pose.h"
+#include "vmech/base/pose.h"
 
 class TDF_Label;
 

@@ -25,7 +25,7 @@ Suite SmallSuite() {
 Result Of(ProblemId problem, Backend solver, Verdict verdict, const std::string& message) {
   Result result;
   result.problem = problem;
-  result.solver = Contestant(solver);
+  result.solver = SolverEntry(solver);
   result.verdict = verdict;
   result.message = message;
   result.time = 1e-5;

@@ -1,4 +1,4 @@
-#include "vmech/apps/compare/crew.h"
+#include "vmech/apps/compare/process_pool.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -18,7 +18,7 @@ std::vector<std::string> Tasks(int count) {
 
 TEST(RunInProcesses, BringsEveryAnswerOfEveryTask) {
   std::map<size_t, std::string> answers;
-  const Foreman foreman{
+  const Coordinator coordinator{
       [&](size_t index, const std::string& answer) { answers[index] += answer + ";"; },
       [](size_t, const std::string& reason) -> std::optional<std::string> {
         ADD_FAILURE() << reason;
@@ -28,7 +28,7 @@ TEST(RunInProcesses, BringsEveryAnswerOfEveryTask) {
     emit(task);
     emit("twice " + std::to_string(2 * std::stoi(task)));
   };
-  RunInProcesses(3, Tasks(20), work, foreman);
+  RunInProcesses(3, Tasks(20), work, coordinator);
   ASSERT_EQ(answers.size(), 20u);
   EXPECT_EQ(answers[7], "7;twice 14;");
 }
@@ -36,17 +36,18 @@ TEST(RunInProcesses, BringsEveryAnswerOfEveryTask) {
 TEST(RunInProcesses, GoesOnWhereAWorkerIsKilled) {
   std::map<size_t, std::string> answers;
   int lost = 0;
-  const Foreman foreman{[&](size_t index, const std::string& answer) { answers[index] = answer; },
-                        [&](size_t, const std::string& reason) -> std::optional<std::string> {
-                          EXPECT_NE(reason.find("signal 9"), std::string::npos) << reason;
-                          ++lost;
-                          return "again";
-                        }};
+  const Coordinator coordinator{
+      [&](size_t index, const std::string& answer) { answers[index] = answer; },
+      [&](size_t, const std::string& reason) -> std::optional<std::string> {
+        EXPECT_NE(reason.find("signal 9"), std::string::npos) << reason;
+        ++lost;
+        return "again";
+      }};
   const Work work = [](const std::string& task, const Emit& emit) {
     if (task == "3" || task == "5") raise(SIGKILL);
     emit(task);
   };
-  RunInProcesses(2, Tasks(8), work, foreman);
+  RunInProcesses(2, Tasks(8), work, coordinator);
   EXPECT_EQ(lost, 2);
   EXPECT_EQ(answers.size(), 8u);
   EXPECT_EQ(answers[3], "again");
@@ -55,23 +56,24 @@ TEST(RunInProcesses, GoesOnWhereAWorkerIsKilled) {
 
 TEST(RunInProcesses, TellsWhatAWorkerThrew) {
   std::string told;
-  const Foreman foreman{[](size_t, const std::string&) {},
-                        [&](size_t, const std::string& reason) -> std::optional<std::string> {
-                          told = reason;
-                          return {};
-                        }};
+  const Coordinator coordinator{
+      [](size_t, const std::string&) {},
+      [&](size_t, const std::string& reason) -> std::optional<std::string> {
+        told = reason;
+        return {};
+      }};
   RunInProcesses(
       1, Tasks(1), [](const std::string&, const Emit&) { throw std::runtime_error("no way"); },
-      foreman);
+      coordinator);
   EXPECT_EQ(told, "no way");
 }
 
 TEST(RunInProcesses, PassesOnWhatTheForemanThrows) {
-  const Foreman foreman{
+  const Coordinator coordinator{
       [](size_t, const std::string&) { throw std::runtime_error("the disk is full"); },
       [](size_t, const std::string&) -> std::optional<std::string> { return {}; }};
   const Work work = [](const std::string& task, const Emit& emit) { emit(task); };
-  EXPECT_THROW(RunInProcesses(2, Tasks(5), work, foreman), std::runtime_error);
+  EXPECT_THROW(RunInProcesses(2, Tasks(5), work, coordinator), std::runtime_error);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 
 #include "support/temp_folder.h"
 #include "vmech/apps/compare/result_text.h"
-#include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/files/document.h"
 
 namespace vmech {
 namespace {

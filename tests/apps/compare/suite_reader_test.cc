@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "support/examples.h"
-#include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/files/document.h"
 
 namespace vmech {
 namespace {

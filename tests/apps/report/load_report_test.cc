@@ -11,6 +11,7 @@
 #include "vmech/apps/report/cycle.h"
 #include "vmech/apps/report/joint_section.h"
 #include "vmech/dynamics/bearings/catalogue.h"
+#include "vmech/dynamics/loads/load_result.h"
 
 namespace vmech {
 namespace {

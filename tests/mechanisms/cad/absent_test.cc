@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "vmech/mechanisms/cad/step_reader.h"
-#include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/cad/step/step_reader.h"
+#include "vmech/mechanisms/files/document.h"
 
 namespace vmech {
 namespace {

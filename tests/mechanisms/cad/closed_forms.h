@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vmech/mechanisms/cad/cad_assembly.h"
+#include "vmech/mechanisms/cad/step/cad_assembly.h"
 #include "vmech/mechanisms/mass_properties.h"
 
 namespace vmech {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "vmech/mechanisms/cad/mechanism_from_cad.h"
-#include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/files/document.h"
 
 namespace vmech {
 namespace {

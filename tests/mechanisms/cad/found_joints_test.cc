@@ -7,11 +7,11 @@
 #include "closed_forms.h"
 #include "samples.h"
 #include "support/temp_folder.h"
-#include "vmech/kinematics/assembly.h"
-#include "vmech/kinematics/kinematic_tree.h"
-#include "vmech/kinematics/mobility.h"
+#include "vmech/kinematics/loops/assembly.h"
+#include "vmech/kinematics/loops/mobility.h"
+#include "vmech/kinematics/tree/kinematic_tree.h"
 #include "vmech/mechanisms/cad/mechanism_from_cad.h"
-#include "vmech/mechanisms/cad/step_reader.h"
+#include "vmech/mechanisms/cad/step/step_reader.h"
 
 namespace vmech {
 namespace {

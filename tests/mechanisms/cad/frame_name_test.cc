@@ -1,4 +1,4 @@
-#include "vmech/mechanisms/cad/frame_name.h"
+#include "vmech/mechanisms/cad/step/frame_name.h"
 
 #include <gtest/gtest.h>
 

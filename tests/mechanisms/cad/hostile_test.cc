@@ -15,8 +15,8 @@
 #include "samples.h"
 #include "support/temp_folder.h"
 #include "vmech/mechanisms/cad/mechanism_from_cad.h"
-#include "vmech/mechanisms/cad/step_reader.h"
-#include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/cad/step/step_reader.h"
+#include "vmech/mechanisms/files/document.h"
 
 namespace vmech {
 namespace {

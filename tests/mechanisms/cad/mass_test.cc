@@ -6,7 +6,7 @@
 #include "closed_forms.h"
 #include "step_writer.h"
 #include "support/temp_folder.h"
-#include "vmech/mechanisms/cad/step_reader.h"
+#include "vmech/mechanisms/cad/step/step_reader.h"
 
 namespace vmech {
 namespace {

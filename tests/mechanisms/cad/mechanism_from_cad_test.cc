@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/files/document.h"
 
 namespace vmech {
 namespace {

@@ -1,4 +1,4 @@
-#include "vmech/mechanisms/cad/part_name.h"
+#include "vmech/mechanisms/cad/step/part_name.h"
 
 #include <gtest/gtest.h>
 

@@ -6,13 +6,15 @@
 
 #include "closed_forms.h"
 #include "support/temp_folder.h"
-#include "vmech/dynamics/load_study.h"
-#include "vmech/kinematics/assembly.h"
-#include "vmech/kinematics/kinematic_tree.h"
-#include "vmech/kinematics/mobility.h"
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/load_study.h"
+#include "vmech/dynamics/loads/run_load_study.h"
+#include "vmech/kinematics/loops/assembly.h"
+#include "vmech/kinematics/loops/mobility.h"
+#include "vmech/kinematics/tree/kinematic_tree.h"
 #include "vmech/mechanisms/cad/mechanism_from_cad.h"
-#include "vmech/mechanisms/cad/step_reader.h"
-#include "vmech/mechanisms/reader.h"
+#include "vmech/mechanisms/cad/step/step_reader.h"
+#include "vmech/mechanisms/files/reader.h"
 
 namespace vmech {
 namespace {

@@ -7,8 +7,8 @@
 #include "step_writer.h"
 #include "support/temp_folder.h"
 #include "vmech/mechanisms/cad/mechanism_from_cad.h"
-#include "vmech/mechanisms/cad/step_reader.h"
-#include "vmech/mechanisms/document.h"
+#include "vmech/mechanisms/cad/step/step_reader.h"
+#include "vmech/mechanisms/files/document.h"
 
 namespace vmech {
 namespace {

@@ -1,4 +1,4 @@
-#include "vmech/mechanisms/cad/step_reader.h"
+#include "vmech/mechanisms/cad/step/step_reader.h"
 
 #include <gtest/gtest.h>
 

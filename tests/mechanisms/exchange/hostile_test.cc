@@ -5,9 +5,9 @@
 #include <ostream>
 
 #include "support/temp_folder.h"
-#include "vmech/mechanisms/document.h"
-#include "vmech/mechanisms/exchange/sdf.h"
-#include "vmech/mechanisms/exchange/urdf.h"
+#include "vmech/mechanisms/exchange/sdf/sdf.h"
+#include "vmech/mechanisms/exchange/urdf/urdf.h"
+#include "vmech/mechanisms/files/document.h"
 
 namespace vmech {
 namespace {

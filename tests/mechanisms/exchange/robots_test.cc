@@ -5,9 +5,9 @@
 #include <fstream>
 
 #include "support/temp_folder.h"
-#include "vmech/mechanisms/document.h"
 #include "vmech/mechanisms/exchange/proposed_grasps.h"
-#include "vmech/mechanisms/exchange/urdf.h"
+#include "vmech/mechanisms/exchange/urdf/urdf.h"
+#include "vmech/mechanisms/files/document.h"
 #include "vmech/mechanisms/mass_properties.h"
 
 namespace vmech {

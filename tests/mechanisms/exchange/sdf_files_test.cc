@@ -6,9 +6,9 @@
 #include <fstream>
 
 #include "support/temp_folder.h"
-#include "vmech/mechanisms/document.h"
-#include "vmech/mechanisms/exchange/sdf.h"
+#include "vmech/mechanisms/exchange/sdf/sdf.h"
 #include "vmech/mechanisms/exchange/start_pose.h"
+#include "vmech/mechanisms/files/document.h"
 
 namespace vmech {
 namespace {

@@ -7,7 +7,9 @@
 
 #include "driven_examples.h"
 #include "support/temp_folder.h"
-#include "vmech/mechanisms/exchange/sdf.h"
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/run_load_study.h"
+#include "vmech/mechanisms/exchange/sdf/sdf.h"
 #include "vmech/mechanisms/freedoms.h"
 
 namespace vmech {

@@ -1,4 +1,4 @@
-#include "vmech/mechanisms/exchange/sdf.h"
+#include "vmech/mechanisms/exchange/sdf/sdf.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 
 #include "support/examples.h"
 #include "support/temp_folder.h"
-#include "vmech/mechanisms/document.h"
 #include "vmech/mechanisms/exchange/start_pose.h"
+#include "vmech/mechanisms/files/document.h"
 #include "vmech/mechanisms/mass_properties.h"
 
 namespace vmech {

@@ -1,4 +1,4 @@
-#include "vmech/mechanisms/exchange/urdf.h"
+#include "vmech/mechanisms/exchange/urdf/urdf.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <ostream>
 
 #include "support/temp_folder.h"
-#include "vmech/mechanisms/document.h"
 #include "vmech/mechanisms/exchange/start_pose.h"
+#include "vmech/mechanisms/files/document.h"
 
 namespace vmech {
 namespace {

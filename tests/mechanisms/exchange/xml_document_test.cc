@@ -1,4 +1,4 @@
-#include "vmech/mechanisms/exchange/xml_document.h"
+#include "vmech/mechanisms/exchange/xml/xml_document.h"
 
 #include <gtest/gtest.h>
 

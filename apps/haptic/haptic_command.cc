@@ -1,0 +1,239 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <stdexcept>
+#include <thread>
+
+#include "vmech/apps/commands.h"
+#include "vmech/apps/files/file_kind.h"
+#include "vmech/apps/haptic/haptic_session.h"
+#include "vmech/hw_interface/loop/replay_master.h"
+#include "vmech/hw_interface/loop/runner.h"
+#include "vmech/hw_interface/safety/stability.h"
+#include "vmech/kinematics/loops/assembled_mechanism.h"
+#include "vmech/kinematics/tree/forward_kinematics.h"
+#include "vmech/mechanisms/files/document.h"
+#include "vmech/mechanisms/plausibility.h"
+
+namespace vmech {
+namespace {
+
+std::atomic<Runner*> running = nullptr;
+
+void StopRunning(int) {
+  if (Runner* runner = running) runner->Stop();
+}
+
+/// Ends the run on Ctrl-C, with the motors off and the report printed.
+class InterruptScope {
+ public:
+  explicit InterruptScope(Runner* runner) {
+    running = runner;
+    std::signal(SIGINT, StopRunning);
+    std::signal(SIGTERM, StopRunning);
+  }
+  ~InterruptScope() {
+    std::signal(SIGINT, SIG_DFL);
+    std::signal(SIGTERM, SIG_DFL);
+    running = nullptr;
+  }
+};
+
+/// Prints the newest figures ten times a second while it lives, on a terminal only.
+class StatusLine {
+ public:
+  StatusLine(const Runner& runner, bool quiet) {
+    if (quiet || !isatty(STDERR_FILENO)) return;
+    thread_ = std::thread([this, &runner] {
+      while (!done_) {
+        const LiveStatus& live = runner.live();
+        fmt::print(stderr, "\r{:>9} ticks  {:>7.2f} N  compute {:>6.1f} us  skipped {:<6} {:<15}",
+                   live.ticks.load(), live.force.load(),
+                   1e-3 * static_cast<double>(live.compute_ns.load()), live.skipped.load(),
+                   live.off == ForceOff::kNone ? "force on" : NameOf(live.off));
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      }
+      fmt::print(stderr, "\r{:78}\r", "");
+    });
+  }
+  ~StatusLine() {
+    done_ = true;
+    if (thread_.joinable()) thread_.join();
+  }
+
+ private:
+  std::atomic<bool> done_ = false;
+  std::thread thread_;
+};
+
+/// The mechanism with its loops closed, within its limits.
+Mechanism Assembled(const HapticArguments& arguments, Mechanism mechanism) {
+  const std::string file = arguments.file.string();
+  if (arguments.tolerance) mechanism.tolerance = *arguments.tolerance;
+  const AssembledMechanism assembled = AssembleMechanism(mechanism);
+  if (!assembled.summary.closed) {
+    throw std::runtime_error(fmt::format("{}: {}", file, assembled.summary.message));
+  }
+  for (const std::string& outside : StartsOutsideLimits(assembled.mechanism)) {
+    throw FileErrors(file, outside + "; give start values within the limits");
+  }
+  if (!arguments.quiet) {
+    for (const std::string& note : assembled.Notes()) fmt::print("note: {}\n", note);
+    for (const std::string& doubt : DoubtsOf(mechanism)) fmt::print("warning: {}\n", doubt);
+  }
+  return assembled.mechanism;
+}
+
+/// Joints with springs or friction stay whole: the hand's dynamics know them in the tree only.
+SpanningTreeOptions KeepSprings(const Mechanism& mechanism) {
+  SpanningTreeOptions options;
+  for (size_t j = 0; j < mechanism.joints.size(); ++j) {
+    for (const Passive& p : mechanism.joints[j].passive) {
+      if (p.stiffness == 0 && p.viscous == 0 && p.coulomb == 0) continue;
+      options.keep.push_back(static_cast<int>(j));
+      break;
+    }
+  }
+  return options;
+}
+
+RunnerOptions OptionsOf(const HapticArguments& arguments, const Matrix3d& R_WD,
+                        const SafetyOptions& safety) {
+  RunnerOptions options;
+  options.seconds = arguments.seconds;
+  options.record = !arguments.record.empty();
+  // A recording does not hold the arm: its replay is the same to the bit without the observer.
+  if (options.record) options.observer.bandwidth = 0;
+  if (arguments.post_mortem) options.post_mortem = arguments.file.stem().string() + "-fault.csv";
+  options.R_WD = R_WD;
+  options.safety = safety;
+  options.gripper = arguments.gripper;
+  options.notes = {{"file", arguments.file.string()},
+                   {"grasp", arguments.grasp},
+                   {"coupling", arguments.coupling},
+                   {"scale", fmt::to_string(arguments.scale)},
+                   {"stiffness", fmt::to_string(arguments.stiffness)},
+                   {"inertia", fmt::to_string(arguments.inertia)},
+                   {"gripper", fmt::to_string(static_cast<int>(arguments.gripper))}};
+  if (arguments.free_running) options.realtime.reset();
+  return options;
+}
+
+/// A mechanism that is held, where the hand takes hold.
+struct HeldMechanism {
+  explicit HeldMechanism(const HapticArguments& arguments)
+      : subject(ReadSubject(arguments.file, arguments.grasp)),
+        tree(BuildKinematicTree(Assembled(arguments, subject.mechanism),
+                                KeepSprings(subject.mechanism))),
+        q(StartCoordinates(tree)),
+        R_WD(DeviceAxes(subject.mechanism)) {
+    const GraspFrame grasp = GraspFrameOf(tree, subject.grasp);
+    TreeWorkspace<double> ws(tree);
+    ForwardKinematics(tree, q.data(), &ws);
+    X_WG = PoseInWorld(ws, grasp.node, grasp.X_BG);
+  }
+
+  HapticSubject subject;
+  KinematicTree tree;
+  VectorXd q;
+  Matrix3d R_WD;
+  Posed X_WG;
+};
+
+/// Runs the loop of a configured master and reports.
+int Hold(const HeldMechanism& held, HapticArguments arguments, Master* master) {
+  arguments.grasp = held.subject.mechanism.grasps[held.subject.grasp].name;
+  const Rendering rendering =
+      MakeRendering({arguments.coupling, arguments.scale, arguments.stiffness, arguments.inertia},
+                    held.tree, held.subject.grasp, held.q, master->info());
+  WallClock wall;
+  FreeRunningClock free;
+  LoopClock* clock = &wall;
+  if (arguments.free_running) clock = &free;
+  Runner runner(OptionsOf(arguments, held.R_WD, rendering.safety), master, rendering.tick.get(),
+                clock);
+  if (!arguments.quiet) fmt::print("{}{}", BoundsReport(master->info()), rendering.report);
+  RunSummary summary;
+  {
+    const InterruptScope interrupt(&runner);
+    const StatusLine line(runner, arguments.quiet);
+    summary = runner.Run();
+  }
+  if (!arguments.record.empty()) {
+    UsingFile("--record", [&] { WriteRecording(arguments.record, runner.Kept()); });
+  }
+  if (!arguments.quiet) fmt::print("{}{}", summary.FullReport(), rendering.tick->FullReport());
+  return summary.status == RunStatus::kFault ? kNoSolution : kSuccess;
+}
+
+/// @throws FileErrors: a recording that cannot be read is bad input.
+Recording ReadInput(const std::filesystem::path& file) {
+  return ReadAs({"replay", {FileKind::kRecording}}, file, [](const std::filesystem::path& path) {
+    try {
+      return ReadRecording(path);
+    } catch (const std::runtime_error& error) {
+      throw FileErrors({{error.what(), 0, 0, "", "a recording of `vmech haptic` is wanted"}});
+    }
+  });
+}
+
+/// The arguments that made a recording. @throws std::invalid_argument if it does not say.
+HapticArguments ArgumentsOf(const Recording& recording, const ReplayArguments& replay) {
+  HapticArguments arguments;
+  arguments.file =
+      replay.file.empty() ? std::filesystem::path(recording.Note("file")) : replay.file;
+  if (arguments.file.empty() || recording.Note("coupling").empty()) {
+    throw std::invalid_argument(
+        fmt::format("{}: does not say what was held; only recordings of `vmech haptic --record` do",
+                    replay.recording.string()));
+  }
+  arguments.grasp = recording.Note("grasp");
+  arguments.coupling = recording.Note("coupling");
+  const auto number = [&](const char* key) {
+    const std::string text = recording.Note(key);
+    char* end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    if (!text.empty() && *end == 0) return value;
+    throw std::invalid_argument(
+        fmt::format("{}: '# note {} {}' is not a number", replay.recording.string(), key, text));
+  };
+  arguments.scale = number("scale");
+  arguments.stiffness = number("stiffness");
+  arguments.inertia = number("inertia");
+  arguments.gripper = number("gripper") != 0;
+  arguments.seconds = recording.period * static_cast<double>(recording.ticks.size());
+  arguments.free_running = true;
+  arguments.post_mortem = false;
+  arguments.quiet = replay.quiet;
+  return arguments;
+}
+
+}  // namespace
+
+int RunHaptic(const HapticArguments& arguments) {
+  const HeldMechanism held(arguments);
+  const std::unique_ptr<Master> master =
+      MakeMaster({arguments.master, arguments.rate, ParseGrip(arguments.grip), held.R_WD, held.X_WG,
+                  held.subject.law, arguments.gripper});
+  master->Configure();
+  return Hold(held, arguments, master.get());
+}
+
+int RunReplay(const ReplayArguments& replay) {
+  const Recording recording = ReadInput(replay.recording);
+  const HapticArguments arguments = ArgumentsOf(recording, replay);
+  const HeldMechanism held(arguments);
+  if (!replay.motion.empty()) {
+    WriteHandMotion(replay.motion, recording, held.R_WD, held.X_WG);
+  }
+  ReplayMaster master(recording, ReplayKind::kSession);
+  master.Configure();
+  return Hold(held, arguments, &master);
+}
+
+}  // namespace vmech

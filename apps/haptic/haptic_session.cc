@@ -1,0 +1,245 @@
+#include "vmech/apps/haptic/haptic_session.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <stdexcept>
+
+#include "vmech/apps/console/option_error.h"
+#include "vmech/apps/files/file_kind.h"
+#include "vmech/hw_interface/loop/replay_master.h"
+#include "vmech/hw_interface/masters/plugin_master.h"
+#include "vmech/hw_interface/masters/spacenav_master.h"
+#include "vmech/hw_interface/remote/udp_master.h"
+#include "vmech/hw_interface/rendering/coupling_choice.h"
+#include "vmech/hw_interface/safety/stability.h"
+#include "vmech/mechanisms/files/document.h"
+#include "vmech/mechanisms/files/reader.h"
+#include "vmech/studies/study_reader.h"
+
+namespace vmech {
+namespace {
+
+HapticSubject ReadHeldStudy(const std::filesystem::path& file) {
+  StudyFile study = ReadStudy(file);
+  if (!study.study.hand) {
+    throw FileErrors(file.string(),
+                     "no hand moves this study; give `motion` a grasp, or name the mechanism");
+  }
+  if (!study.study.external.empty()) {
+    throw FileErrors(file.string(), "external loads are not rendered to a hand; leave them out");
+  }
+  return {std::move(study.study.mechanism), study.study.hand->grasp, study.study.hand->law};
+}
+
+/// The part of a word behind the mark of its kind: "FILE" of "replay:FILE".
+std::optional<std::string> Behind(const std::string& word, std::string_view mark) {
+  if (word.rfind(mark, 0) != 0) return std::nullopt;
+  return word.substr(mark.size());
+}
+
+/// Where a hand in the world is for the simulated operator.
+HandMotion InDeviceAxes(const HandLaw& law, const Registration& registration) {
+  return [law, registration](double time) {
+    const HandSample hand = law.At(time);
+    const Matrix3d R_DW = registration.X_WD.R.transpose();
+    HandTargetMotion target;
+    target.X_DT = registration.X_WD.inverse() * hand.X_WH;
+    target.X_DT.R *= registration.R_HK.transpose();
+    target.V_DT << R_DW * hand.V_WH.head<3>(), R_DW * hand.V_WH.tail<3>();
+    return target;
+  };
+}
+
+/// Moment on the gripper [N m]: closes after half a second, opens for a second every four.
+double SqueezeWithPauses(double time) {
+  constexpr double kFirm = 0.4;
+  const bool closes = time > 0.5 && std::fmod(time, 4.0) < 3;
+  return closes ? kFirm : -kFirm;
+}
+
+std::unique_ptr<Master> MakeSimulated(const MasterRequest& request) {
+  constexpr double kReach = 0.05;  // [m] of a wandering hand
+  constexpr double kTurn = 0.2;    // [rad]
+  SimulatedMasterOptions options;
+  options.period = 1 / request.rate;
+  options.hand = ImpedanceOf(request.grip);
+  const Posed X_DH =
+      ArmModel(std::make_shared<const ArmDescription>(SarcosMasterArm(options.hand.mass))).X_DH();
+  options.motion = request.law
+                       ? InDeviceAxes(*request.law, GraspedAt(request.R_WD, X_DH, request.X_WG))
+                       : Wander(X_DH, kReach, kTurn, 1);
+  if (request.gripper) options.squeeze = SqueezeWithPauses;
+  return std::make_unique<SimulatedMaster>(options);
+}
+
+std::unique_ptr<Master> MakeUdp(const std::string& address) {
+  const std::size_t colon = address.rfind(':');
+  UdpMasterOptions options;
+  options.local.host = "0.0.0.0";
+  options.device.host = address.substr(0, colon);
+  const std::string port = colon == std::string::npos ? "" : address.substr(colon + 1);
+  const auto [end, error] =
+      std::from_chars(port.data(), port.data() + port.size(), options.device.port);
+  if (error != std::errc{} || end != port.data() + port.size()) {
+    throw OptionError(fmt::format("--master: udp:HOST:PORT is meant, not 'udp:{}'", address));
+  }
+  return std::make_unique<UdpMaster>(options);
+}
+
+Rendering MakeCoupled(const RenderingRequest& request, const KinematicTree& tree, int grasp,
+                      const VectorXd& q, const DeviceInfo& device) {
+  CoupledTickOptions options;
+  options.smoothing = 2 * device.period;
+  const CouplingChoice choice =
+      ChooseCoupling(tree, GraspFrameOf(tree, grasp), q, device, options.smoothing);
+  options.coupling = choice.coupling;
+  options.scale = request.scale > 0 ? request.scale : choice.scale;
+  const Vector6d& K = choice.coupling.stiffness;
+  std::string report = fmt::format(
+      "virtual coupling: {:.4g} N/m, {:.4g} N m/rad; inertia {:.3g} times the handle's, "
+      "weight at the hand {:.3g} N\n",
+      K[0], K[3], choice.inertia_ratio, choice.weight);
+  if (options.scale != 1) {
+    report += fmt::format("forces are felt at {:.3g} % of the mechanism's{}\n", 100 * options.scale,
+                          request.scale > 0 ? "" : ": what this device can render (--scale)");
+  }
+  return {std::make_unique<CoupledTick>(tree, grasp, q, device.period, options), choice.Safety(),
+          std::move(report)};
+}
+
+Rendering MakePaper(const RenderingRequest& request, const KinematicTree& tree, int grasp,
+                    const VectorXd& q, const DeviceInfo& device) {
+  MechanismTickOptions options;
+  options.law = LawFor(device, request.stiffness);
+  options.inertia = request.inertia > 0
+                        ? request.inertia
+                        : StableInertiaShare(tree, GraspFrameOf(tree, grasp), q, device);
+  std::string report =
+      fmt::format("constraint: {:.4g} N/m, {:.4g} N m/rad; {:.3g} % of the inertia\n",
+                  options.law.stiffness[0], options.law.stiffness[3], 100 * options.inertia);
+  return {std::make_unique<MechanismTick>(tree, grasp, q, device, options), SafetyOptions{},
+          std::move(report)};
+}
+
+}  // namespace
+
+Rendering MakeRendering(const RenderingRequest& request, const KinematicTree& tree, int grasp,
+                        const VectorXd& q, const DeviceInfo& device) {
+  const bool paper = request.coupling == "paper";
+  return (paper ? MakePaper : MakeCoupled)(request, tree, grasp, q, device);
+}
+
+HapticSubject ReadSubject(const std::filesystem::path& file, const std::string& grasp) {
+  HapticSubject subject =
+      KindOfFile(file) == FileKind::kStudy
+          ? ReadHeldStudy(file)
+          : HapticSubject{
+                ReadAs({"haptic", {FileKind::kMechanism, FileKind::kStudy}}, file, ReadMechanism),
+                0,
+                {}};
+  if (!grasp.empty()) subject.grasp = FindGrasp(subject.mechanism, grasp);
+  if (subject.grasp >= 0 && subject.grasp < static_cast<int>(subject.mechanism.grasps.size())) {
+    return subject;
+  }
+  std::vector<std::string> names;
+  for (const Grasp& g : subject.mechanism.grasps) names.push_back(g.name);
+  if (names.empty()) {
+    throw FileErrors(file.string(), "no grasps: give the mechanism one (docs/file-format.md)");
+  }
+  throw OptionError(fmt::format("--grasp: there is no grasp {}{}; there are {}", Quoted(grasp),
+                                DidYouMean(grasp, names), fmt::join(names, ", ")));
+}
+
+Matrix3d DeviceAxes(const Mechanism& mechanism) {
+  const Vector3d& g = mechanism.gravity_W;
+  const Vector3d up = g.norm() > 0 ? Vector3d(-g.normalized()) : Vector3d::UnitZ();
+  const bool along_x = std::abs(up.x()) > 0.9;
+  return AxesFromZX(up, along_x ? Vector3d::UnitY() : Vector3d::UnitX());
+}
+
+Grip ParseGrip(const std::string& word) {
+  if (word == "absent") return Grip::kAbsent;
+  if (word == "light") return Grip::kLight;
+  if (word == "relaxed") return Grip::kRelaxed;
+  if (word == "firm") return Grip::kFirm;
+  throw OptionError(
+      fmt::format("--grip: {} is not one of absent, light, relaxed, firm", Quoted(word)));
+}
+
+std::unique_ptr<Master> MakeMaster(const MasterRequest& request) {
+  const std::string& word = request.word;
+  if (word == "simulated") return MakeSimulated(request);
+  if (word == "spacenav") return std::make_unique<SpacenavMaster>();
+  if (const auto file = Behind(word, "replay:")) {
+    return std::make_unique<ReplayMaster>(
+        UsingFile("--master", [&] { return ReadRecording(*file); }));
+  }
+  if (const auto address = Behind(word, "udp:")) return MakeUdp(*address);
+  if (const auto library = Behind(word, "plugin:")) {
+    const std::size_t colon = library->find(':');
+    const std::string parameters = colon == std::string::npos ? "" : library->substr(colon + 1);
+    return UsingFile("--master", [&] {
+      return std::make_unique<PluginMaster>(library->substr(0, colon), parameters);
+    });
+  }
+  throw OptionError(
+      fmt::format("--master: {} is not one of simulated, spacenav, replay:FILE, udp:HOST:PORT, "
+                  "plugin:LIBRARY[:PARAMETERS]",
+                  Quoted(word)));
+}
+
+void WriteHandMotion(const std::filesystem::path& file, const Recording& recording,
+                     const Matrix3d& R_WD, const Posed& X_WG) {
+  std::ofstream out(file);
+  out << "t,x,y,z,qw,qx,qy,qz\n";
+  std::optional<Registration> registration;
+  std::uint64_t first = 0, last = 0;
+  for (const TickRecord& tick : recording.ticks) {
+    const MasterState& state = tick.state;
+    if (tick.io != IoStatus::kOk || (registration && state.sequence <= last)) continue;
+    if (!registration) {
+      registration = GraspedAt(R_WD, state.X_DH, X_WG);
+      first = state.sequence;
+    }
+    last = state.sequence;
+    const Posed X_WH = registration->HandInWorld(state.X_DH);
+    const Eigen::Quaterniond turn(X_WH.R);
+    out << fmt::format("{},{},{},{},{},{},{},{}\n",
+                       static_cast<double>(last - first) * recording.period, X_WH.p.x(), X_WH.p.y(),
+                       X_WH.p.z(), turn.w(), turn.x(), turn.y(), turn.z());
+  }
+  if (!out.flush()) {
+    throw FileErrors(file.string(), "cannot be written; give another place with --motion");
+  }
+}
+
+ContactLaw LawFor(const DeviceInfo& device, double stiffness) {
+  constexpr double kNoForce = 1000;  // [N/m]
+  constexpr double kLever = 0.05;    // [m], of a hand
+  ContactLaw law;
+  if (!device.takes_wrench && !device.takes_torque) {
+    law.stiffness.head<3>().setConstant(kNoForce);
+    law.stiffness.tail<3>().setConstant(kNoForce * kLever * kLever);
+    return law;
+  }
+  RenderingGains wanted;
+  wanted.stiffness.setConstant(std::numeric_limits<double>::max());
+  law.stiffness = LimitedGains(device, wanted).stiffness;
+  // A device that does not state its damping: soft, and watched by the passivity controller.
+  if (device.linear.damping == 0) law.stiffness.head<3>().setConstant(kNoForce / 4);
+  if (device.angular.damping == 0) {
+    law.stiffness.tail<3>() = kLever * kLever * law.stiffness.head<3>();
+  }
+  if (stiffness > 0 && stiffness < law.stiffness[0]) {
+    law.stiffness.tail<3>() *= stiffness / law.stiffness[0];
+    law.stiffness.head<3>().setConstant(stiffness);
+  }
+  return law;
+}
+
+}  // namespace vmech

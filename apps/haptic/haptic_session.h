@@ -1,0 +1,91 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "vmech/hw_interface/masters/simulated_master.h"
+#include "vmech/hw_interface/rendering/coupled_tick.h"
+#include "vmech/hw_interface/rendering/mechanism_tick.h"
+#include "vmech/kinematics/motion/motion_law.h"
+
+namespace vmech {
+
+/// What a hand is to hold.
+struct HapticSubject {
+  Mechanism mechanism;
+  int grasp = -1;
+  std::optional<HandLaw> law;  ///< of the simulated operator's hand; none: it wanders
+};
+
+/// Reads a mechanism, or a study that a hand moves. `grasp` by name; empty: the study's, or the
+/// first.
+/// @throws FileErrors naming the file and what is wrong; OptionError for an unknown grasp.
+HapticSubject ReadSubject(const std::filesystem::path& file, const std::string& grasp);
+
+/// How the device's axes lie in the world: its z against gravity (along z if there is none).
+Matrix3d DeviceAxes(const Mechanism& mechanism);
+
+/// Does something with a file that an option names, whose faults are those of a file.
+/// @throws std::invalid_argument instead of std::runtime_error.
+template <typename Use>
+auto UsingFile(std::string_view option, Use use) {
+  try {
+    return use();
+  } catch (const std::runtime_error& error) {
+    throw std::invalid_argument(std::string(option) + ": " + error.what());
+  }
+}
+
+/// "absent", "light", "relaxed" or "firm". @throws OptionError.
+Grip ParseGrip(const std::string& word);
+
+/// The master that a word stands for: simulated, spacenav, replay:FILE, udp:HOST:PORT or
+/// plugin:LIBRARY[:PARAMETERS]. The simulated operator holds the mechanism at X_WG.
+/// @throws OptionError for any other word, std::invalid_argument for a file that cannot be used.
+struct MasterRequest {
+  std::string word;
+  double rate = 1000;
+  Grip grip = Grip::kRelaxed;
+  Matrix3d R_WD = Matrix3d::Identity();
+  Posed X_WG;
+  std::optional<HandLaw> law;
+  bool gripper = false;  ///< the simulated operator works it
+};
+std::unique_ptr<Master> MakeMaster(const MasterRequest& request);
+
+/// The hand of a recording in the world as a table t, x, y, z, qw, qx, qy, qz for a study's
+/// `motion: {grasp: .., table: ..}` in metres, from the first sample on; the hand took hold at
+/// X_WG.
+/// @throws FileErrors if the file cannot be written.
+void WriteHandMotion(const std::filesystem::path& file, const Recording& recording,
+                     const Matrix3d& R_WD, const Posed& X_WG);
+
+/// Stiffness and law of the constraint for a device: its own bounds, or the wanted stiffness if
+/// that is lower. A device without force gets a stiffness that only weighs positions against
+/// rotations.
+ContactLaw LawFor(const DeviceInfo& device, double stiffness);
+
+/// How a mechanism is rendered; zeros leave it to the device.
+struct RenderingRequest {
+  std::string coupling = "virtual";   ///< or "paper"
+  double scale = 0;                   ///< virtual: of all forces
+  double stiffness = 0, inertia = 0;  ///< paper: of the constraint [N/m]; share of the inertia
+};
+
+/// The virtual side of a session, what it asks of the safety filter, and both in words.
+struct Rendering {
+  std::unique_ptr<Tick> tick;
+  SafetyOptions safety;
+  std::string report;
+};
+
+/// A mechanism held at its grasp in the closed pose q, for a device. Keeps a reference to the tree.
+/// @throws std::invalid_argument as the ticks.
+Rendering MakeRendering(const RenderingRequest& request, const KinematicTree& tree, int grasp,
+                        const VectorXd& q, const DeviceInfo& device);
+
+}  // namespace vmech

@@ -1,0 +1,119 @@
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "vmech/apps/loads/dead_centres.h"
+#include "vmech/apps/loads/tables.h"
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/open_components.h"
+#include "vmech/mechanisms/freedoms.h"
+
+namespace vmech {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kComponents[] = {"fx", "fy", "fz", "mx", "my", "mz"};
+
+/// JSON has no infinity; what is unlimited is null.
+Json Finite(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json JointSummary(const StudyFile& file, const LoadStudyResult& loads, size_t j) {
+  double radial = 0, axial = 0, tilting = 0;
+  for (const PoseLoads& pose : loads.poses) {
+    radial = std::max(radial, pose.joints[j].force.head<2>().norm());
+    axial = std::max(axial, std::abs(pose.joints[j].force.z()));
+    tilting = std::max(tilting, pose.joints[j].moment.head<2>().norm());
+  }
+  Json certainty = Json::array();
+  for (Certainty c : loads.certainty[j]) certainty.push_back(NameOf(c));
+  const JointCertainty matters = VerdictsThatMatter(loads, j);
+  Json open = Json::array();
+  for (size_t k = 0; k < matters.size(); ++k) {
+    if (matters[k] == Certainty::kNotDetermined) open.push_back(kComponents[k]);
+  }
+  return {{"name", file.study.mechanism.joints[j].name},
+          {"type", NameOf(file.study.mechanism.joints[j].type)},
+          {"peak_radial_force", radial},
+          {"peak_axial_force", axial},
+          {"peak_tilting_moment", tilting},
+          {"certainty", certainty},
+          {"open", open}};
+}
+
+Json BearingSummary(const StudyFile& file, const BearingOutcome& outcome) {
+  Json json{{"joint", file.study.mechanism.joints[outcome.joint].name},
+            {"complete", outcome.bearings.complete()},
+            {"met", outcome.bearings.met()},
+            {"certain", outcome.bearings.certainty == LoadCertainty::kCertain},
+            {"system_life_hours", Finite(outcome.bearings.system_life_hours)},
+            {"asked_system_life_hours", outcome.bearings.asked_system_life},
+            {"positions", Json::array()}};
+  for (const BearingSelection& selection : outcome.bearings.selections) {
+    Json position{{"message", selection.message}, {"warnings", selection.warnings}};
+    if (const Candidate* best = selection.best()) {
+      position["designation"] = best->bearing.designation;
+      position["fits"] = best->fits();
+      if (best->rating) {
+        position["life_hours"] = Finite(best->rating->modified_life_hours);
+        position["static_safety"] = Finite(best->rating->static_safety);
+        position["mean_load"] = best->rating->mean_load;
+      }
+    }
+    json["positions"].push_back(position);
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string SummaryJson(const StudyFile& file, const StudyOutcome& outcome) {
+  const LoadStudyResult& loads = outcome.loads;
+  Json json{{"study", file.name},
+            {"mechanism", file.study.mechanism.name},
+            {"motion", file.motion},
+            {"rule", NameOf(file.study.rule)},
+            {"norm_length", loads.norm_length},
+            {"poses", loads.poses.size()},
+            {"mobility", loads.mobility},
+            {"redundant_equations", loads.redundant_equations},
+            {"cut_joints", loads.cut_joints},
+            {"idle_freedoms", loads.idle},
+            {"max_closure_error", Finite(loads.max_closure)},
+            {"max_power_error", Finite(loads.max_power_error)},
+            {"singular_poses", loads.singular_poses}};
+  Json drives = Json::array();
+  for (size_t k = 0; k < file.study.drives.size(); ++k) {
+    double peak = 0;
+    for (const PoseLoads& pose : loads.poses) {
+      peak = std::max(peak, std::abs(pose.drives[k].force));
+    }
+    const JointDrive& drive = file.study.drives[k];
+    const Joint& joint = file.study.mechanism.joints[drive.joint];
+    drives.push_back({{"joint", joint.name},
+                      {"freedom", NameOfFreedom(joint.type, drive.freedom)},
+                      {"peak_force", peak},
+                      {"certainty", NameOf(loads.drive_certainty[k])}});
+  }
+  json["drives"] = drives;
+  json["dead_centres"] = Json::array();
+  for (const DeadCentre& centre : FindDeadCentres(file.study, loads)) {
+    json["dead_centres"].push_back(
+        {{"joint", file.study.mechanism.joints[centre.joint].name}, {"angle", centre.angle}});
+  }
+  json["joints"] = Json::array();
+  for (size_t j = 0; j < file.study.mechanism.joints.size(); ++j) {
+    json["joints"].push_back(JointSummary(file, loads, j));
+  }
+  json["bearings"] = Json::array();
+  for (const BearingOutcome& bearing : outcome.bearings) {
+    json["bearings"].push_back(BearingSummary(file, bearing));
+  }
+  json["warnings"] = outcome.warnings;
+  json["notes"] = loads.notes;
+  return json.dump(2) + "\n";
+}
+
+}  // namespace vmech

@@ -1,0 +1,86 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "vmech/apps/commands.h"
+#include "vmech/apps/files/file_kind.h"
+#include "vmech/apps/mechanism/check.h"
+#include "vmech/mechanisms/files/reader.h"
+
+namespace vmech {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// What came of one file: a text or a JSON object, and what a shell is to know.
+struct Checked {
+  std::string report;
+  ExitCode code = kSuccess;
+};
+
+ExitCode CodeOf(const MechanismCheck& check, bool strict) {
+  if (!check.closed()) return kNoSolution;
+  return strict && !check.doubts.empty() ? kBadInput : kSuccess;
+}
+
+Checked CheckFile(const std::filesystem::path& path, const CheckArguments& arguments) {
+  Mechanism mechanism = ReadAs({"check", {FileKind::kMechanism}}, path, ReadMechanism);
+  if (arguments.tolerance) mechanism.tolerance = *arguments.tolerance;
+  const MechanismCheck check = CheckMechanism(mechanism);
+  return {arguments.json ? JsonReport(check, arguments.dh) : TextReport(check, arguments.dh),
+          CodeOf(check, arguments.strict)};
+}
+
+/// The same of one file among several: a file that is wrong does not keep the others from being
+/// checked.
+Checked CheckOneOfSeveral(const std::filesystem::path& path, const CheckArguments& arguments) {
+  try {
+    return CheckFile(path, arguments);
+  } catch (const FileErrors& errors) {
+    fmt::print(stderr, "{}\n", errors.what());
+    Json list = Json::array();
+    for (const FileError& error : errors.errors()) list.push_back(ToString(error));
+    return {Json{{"errors", list}}.dump(), kBadInput};
+  }
+}
+
+void PrintTexts(const std::vector<std::filesystem::path>& paths,
+                const std::vector<Checked>& checked) {
+  for (size_t i = 0; i < paths.size(); ++i) {
+    if (checked[i].code == kBadInput) continue;
+    fmt::print("{}file        {}\n{}", i == 0 ? "" : "\n", paths[i].string(), checked[i].report);
+  }
+}
+
+/// One list, an object for every file, with its name.
+void PrintJsons(const std::vector<std::filesystem::path>& paths,
+                const std::vector<Checked>& checked) {
+  Json list = Json::array();
+  for (size_t i = 0; i < paths.size(); ++i) {
+    Json entry{{"file", paths[i].string()}};
+    entry.update(Json::parse(checked[i].report));
+    list.push_back(entry);
+  }
+  fmt::print("{}\n", list.dump(2));
+}
+
+}  // namespace
+
+int RunCheck(const CheckArguments& arguments) {
+  if (arguments.mechanisms.size() == 1) {
+    const Checked checked = CheckFile(arguments.mechanisms[0], arguments);
+    fmt::print("{}", checked.report);
+    return checked.code;
+  }
+  std::vector<Checked> checked;
+  int worst = kSuccess;
+  for (const std::filesystem::path& path : arguments.mechanisms) {
+    checked.push_back(CheckOneOfSeveral(path, arguments));
+    worst = std::max<int>(worst, checked.back().code);
+  }
+  (arguments.json ? PrintJsons : PrintTexts)(arguments.mechanisms, checked);
+  return worst;
+}
+
+}  // namespace vmech

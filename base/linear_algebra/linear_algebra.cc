@@ -1,0 +1,103 @@
+#include "vmech/base/linear_algebra/linear_algebra.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+
+namespace vmech {
+
+VectorXd SolveAboveFloor(const MatrixXd& H, const VectorXd& b, double floor) {
+  if (H.cols() == 0) return VectorXd(0);
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(H);
+  const auto counts = eigen.eigenvalues().array() > floor;
+  const VectorXd inverse = counts.select(eigen.eigenvalues().array().inverse(), 0.0);
+  return eigen.eigenvectors() *
+         inverse.cwiseProduct(VectorXd(eigen.eigenvectors().transpose() * b));
+}
+
+MatrixXd FindKernel(const MatrixXd& H, double floor) {
+  if (H.cols() == 0) return H;
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(H);  // eigenvalues increase
+  return eigen.eigenvectors().leftCols((eigen.eigenvalues().array() <= floor).count());
+}
+
+VectorXd SolveSymmetric(const MatrixXd& H, const VectorXd& b) {
+  return Eigen::LDLT<MatrixXd>(H).solve(b);
+}
+
+namespace {
+
+using Orthogonal = Eigen::CompleteOrthogonalDecomposition<MatrixXd>;
+
+/// Pivots below `tolerance`, or `tolerance` times the largest, count as zero. The largest is the
+/// longest column.
+Orthogonal Decomposed(const MatrixXd& A, double tolerance) {
+  Orthogonal decomposition(A.rows(), A.cols());
+  const double largest = A.colwise().norm().maxCoeff();
+  if (tolerance > 0) decomposition.setThreshold(tolerance / std::min(1.0, largest));
+  decomposition.compute(A);
+  return decomposition;
+}
+
+}  // namespace
+
+VectorXd MinimumNormSolution(const MatrixXd& A, const VectorXd& b, double tolerance) {
+  if (A.rows() == 0 || A.cols() == 0) return VectorXd::Zero(A.cols());
+  return Decomposed(A, tolerance).solve(b);
+}
+
+RankSplit SplitByRank(const MatrixXd& A, double tolerance) {
+  const Eigen::Index m = A.rows(), n = A.cols();
+  if (m == 0 || n == 0 || A.colwise().norm().maxCoeff() <= tolerance) {
+    return {0, MatrixXd::Identity(n, n), MatrixXd::Identity(m, m), MatrixXd::Zero(n, m)};
+  }
+  const Orthogonal decomposition = Decomposed(A, tolerance);
+  const Eigen::Index rank = decomposition.rank();
+  const MatrixXd Q = decomposition.householderQ() * MatrixXd::Identity(m, m);
+  const MatrixXd Z = decomposition.colsPermutation() * decomposition.matrixZ().transpose();
+  return {static_cast<int>(rank), Z.rightCols(n - rank), Q.rightCols(m - rank),
+          decomposition.pseudoInverse()};
+}
+
+RowSpace::RowSpace(const MatrixXd& A, double tolerance) : columns_(A.cols()) {
+  if (A.size() == 0) return;
+  qr_.compute(A.transpose());
+  // Eigen's threshold is relative to the largest pivot; where that is rounding, nothing counts.
+  if (qr_.maxPivot() <= tolerance) return;
+  qr_.setThreshold(tolerance / std::min(1.0, qr_.maxPivot()));
+  rank_ = qr_.rank();
+}
+
+MatrixXd RowSpace::Basis() const {
+  const MatrixXd first = MatrixXd::Identity(columns_, rank_);
+  return rank_ == 0 ? first : MatrixXd(qr_.householderQ() * first);
+}
+
+MatrixXd RowSpace::FromNullSpace(const MatrixXd& coordinates) const {
+  MatrixXd last = MatrixXd::Zero(columns_, coordinates.cols());
+  last.bottomRows(columns_ - rank_) = coordinates;
+  return rank_ == 0 ? last : MatrixXd(qr_.householderQ() * last);
+}
+
+NullSpace FindNullSpace(const MatrixXd& A, double tolerance) {
+  const RowSpace rows(A, tolerance);
+  const Eigen::Index free = A.cols() - rows.rank();
+  return {rows.rank(), rows.FromNullSpace(MatrixXd::Identity(free, free))};
+}
+
+std::vector<int> MostIndependentRows(const MatrixXd& A, int count) {
+  const Eigen::ColPivHouseholderQR<MatrixXd> qr(A.transpose());
+  std::vector<int> rows;
+  for (int i = 0; i < count; ++i) rows.push_back(qr.colsPermutation().indices()[i]);
+  return rows;
+}
+
+LeftSingularVectors FindLeftSingularVectors(const MatrixXd& A) {
+  if (A.cols() == 0) return {VectorXd(0), MatrixXd::Identity(A.rows(), A.rows())};
+  const Eigen::JacobiSVD<MatrixXd> svd(A, Eigen::ComputeFullU);
+  return {svd.singularValues(), svd.matrixU()};
+}
+
+}  // namespace vmech

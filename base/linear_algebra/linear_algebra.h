@@ -1,0 +1,73 @@
+#pragma once
+
+#include <Eigen/QR>
+#include <vector>
+
+#include "vmech/base/pose.h"
+
+namespace vmech {
+
+/// The dense decompositions that the offline analyses use, each compiled once. None in the pose
+/// kernels.
+
+/// x of H x = b by L D L' with pivoting; H symmetric positive semidefinite.
+VectorXd SolveSymmetric(const MatrixXd& H, const VectorXd& b);
+
+/// The shortest x of H x = b without the eigenvectors of H whose eigenvalue is at most `floor`:
+/// unknowns along them are zero. H symmetric positive semidefinite.
+VectorXd SolveAboveFloor(const MatrixXd& H, const VectorXd& b, double floor);
+
+/// The eigenvectors of H whose eigenvalue is at most `floor` [n, how many]. H as above.
+MatrixXd FindKernel(const MatrixXd& H, double floor);
+
+/// The shortest x that minimises |A x - b|, by complete orthogonal decomposition. Pivots below
+/// `tolerance`, or `tolerance` times the largest, count as zero; 0 takes those of rounding.
+VectorXd MinimumNormSolution(const MatrixXd& A, const VectorXd& b, double tolerance = 0);
+
+/// Rank and null space of a matrix by Householder QR of its transpose with column pivoting.
+struct NullSpace {
+  int rank = 0;
+  MatrixXd basis;  ///< [columns, columns - rank], orthonormal
+};
+
+/// For matrices whose entries are of the order of 1: pivots below `tolerance`, or `tolerance` times
+/// the largest, count as zero. A matrix of nothing but rounding has rank 0.
+NullSpace FindNullSpace(const MatrixXd& A, double tolerance);
+
+/// The same without forming the null space, which may be large: memory is that of A.
+class RowSpace {
+ public:
+  RowSpace(const MatrixXd& A, double tolerance);
+
+  int rank() const { return static_cast<int>(rank_); }
+  /// Orthonormal basis of the rows [columns, rank].
+  MatrixXd Basis() const;
+  /// Vectors of the null space from their coordinates in FindNullSpace's basis [columns - rank, n].
+  MatrixXd FromNullSpace(const MatrixXd& coordinates) const;
+
+ private:
+  Eigen::Index columns_ = 0, rank_ = 0;
+  Eigen::ColPivHouseholderQR<MatrixXd> qr_;
+};
+
+/// A matrix A of the order of 1, and what is left of it when pivots that are small in the sense of
+/// FindNullSpace count as zero.
+struct RankSplit {
+  int rank = 0;
+  MatrixXd null_space;       ///< [columns, columns - rank], orthonormal: A N = 0
+  MatrixXd left_null_space;  ///< [rows, rows - rank], orthonormal: U'A = 0
+  MatrixXd pseudo_inverse;   ///< [columns, rows]
+};
+RankSplit SplitByRank(const MatrixXd& A, double tolerance);
+
+/// The first `count` rows of A that column pivoting of A' chooses: the best-conditioned ones.
+std::vector<int> MostIndependentRows(const MatrixXd& A, int count);
+
+/// Singular values, largest first, and all left singular vectors [rows, rows].
+struct LeftSingularVectors {
+  VectorXd values;
+  MatrixXd vectors;
+};
+LeftSingularVectors FindLeftSingularVectors(const MatrixXd& A);
+
+}  // namespace vmech

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <compare>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "vmech/comparison/suite.h"
+#include "vmech/solvers/backend.h"
+
+namespace vmech {
+
+/// Who takes part in a comparison: the back ends of solvers/, and the fast path
+/// (kinematics/hand_tracker.h), which follows paths only.
+class SolverEntry {
+ public:
+  SolverEntry() = default;  ///< the first one
+  explicit SolverEntry(Backend backend) : place_(static_cast<int>(backend)) {}
+  static SolverEntry FastPath();
+
+  std::string_view name() const;
+  /// None for the fast path.
+  std::optional<Backend> backend() const;
+  bool Takes(const TargetBlock& block) const { return backend() || block.is_path(); }
+
+  friend auto operator<=>(const SolverEntry&, const SolverEntry&) = default;
+
+ private:
+  int place_ = 0;  // in the order of tables: that of Backend, then the fast path
+};
+
+/// All of them, in the order of tables.
+std::vector<SolverEntry> AllContestants();
+std::optional<SolverEntry> ContestantFromName(std::string_view name);
+
+}  // namespace vmech

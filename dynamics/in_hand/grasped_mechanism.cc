@@ -1,0 +1,179 @@
+#include "vmech/dynamics/in_hand/grasped_mechanism.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "vmech/base/linear_algebra/small_ldlt.h"
+#include "vmech/base/screw_algebra.h"
+#include "vmech/kinematics/loops/loops.h"
+#include "vmech/kinematics/tree/validity.h"
+
+namespace vmech {
+namespace {
+
+/// About the origin and in the axes of X.
+Wrenchd WrenchIn(const Axes& X, const Screw& W) {
+  const Four moment = W.angular - Cross(X.p, W.linear);
+  return {Vector3Of(InverseRotate(X, W.linear)), Vector3Of(InverseRotate(X, moment))};
+}
+
+}  // namespace
+
+GraspedMechanism::GraspedMechanism(const KinematicTree& tree, const GraspFrame& grasp)
+    : tree_(tree),
+      grasp_(grasp),
+      row_scale_(LoopRowScale(tree)),
+      ws_(tree),
+      inertias_(tree),
+      J_(tree.nv),
+      C_(MatrixXd::Zero(PaddedSize(tree.rows), tree.nv)),
+      e2_(VectorXd::Zero(C_.rows())) {
+  RequireNode("grasp.node", tree, grasp.node);
+  SetGravity(tree.mechanism.gravity_W, &ws_);
+}
+
+void GraspedMechanism::Set(const VectorXd& q) noexcept {
+  SetLoops(q);
+  SetJacobians();
+}
+
+void GraspedMechanism::SetLoops(const VectorXd& q) noexcept {
+  ForwardKinematics(tree_, q.data(), &ws_);
+  LoopErrors(tree_, &ws_);
+  for (size_t l = 0; l < tree_.loops.size(); ++l) {
+    const Loop& loop = tree_.loops[l];
+    const Vector6d& e2 = ws_.loops[l].state.e2;
+    for (int k = 0; k < loop.rows; ++k) e2_[loop.row + k] = row_scale_[loop.row + k] * e2[k];
+  }
+}
+
+void GraspedMechanism::SetJacobians() noexcept {
+  BodyInertias(tree_, ws_, &inertias_);
+  G_ = ws_.at(grasp_.node).X * grasp_.X_BG;
+  PointJacobian(tree_, ws_, grasp_.node, G_.p, &J_);
+  LoopWrenches(tree_, row_scale_.data(), &ws_);
+  for (size_t l = 0; l < tree_.loops.size(); ++l) {
+    const Loop& loop = tree_.loops[l];
+    for (const LoopColumn& c : loop.columns) {
+      const Screw S = c.sign * ws_.S[c.v];
+      double* column = &C_(loop.row, c.v);
+      for (int k = 0; k < loop.rows; ++k) column[k] = Power(ws_.loops[l].rows[k], S);
+    }
+  }
+}
+
+Posed GraspedMechanism::X_WG() const noexcept {
+  return PoseOf(G_);
+}
+
+Matrix6Xd GraspedMechanism::J() const {
+  Matrix6Xd J(6, tree_.nv);
+  FillMatrix(J_, &J);
+  return J;
+}
+
+void GraspedMechanism::ComputeWeightedJacobian(const Screw& root, MatrixXd* B) const noexcept {
+  for (int i = 0; i < tree_.nv; ++i) {
+    const Screw column = Scaled(root, J_[i]);
+    StoreFour(column.linear, &(*B)(0, i));
+    StoreFour(column.angular, &(*B)(4, i));
+  }
+}
+
+Posed GraspedMechanism::X_WB(int node) const noexcept {
+  return PoseOf(ws_.at(node).X);
+}
+
+Screw GraspedMechanism::Twist(const VectorXd& v) const noexcept {
+  Screw V;
+  for (int i = 0; i < tree_.nv; ++i) V += v[i] * J_[i];
+  return V;
+}
+
+void GraspedMechanism::AddForces(const Screw& w, VectorXd* tau) const noexcept {
+  for (int i = 0; i < tree_.nv; ++i) (*tau)[i] += Power(w, J_[i]);
+}
+
+void GraspedMechanism::ComputeMassMatrix(MatrixXd* M) noexcept {
+  CompositeMassMatrix(tree_, ws_, &inertias_, M);
+}
+
+void GraspedMechanism::SetVelocities(const VectorXd& v) noexcept {
+  ForwardVelocities(tree_, v.data(), &ws_);
+}
+
+void GraspedMechanism::ComputeLoopBias(double s, VectorXd* d) noexcept {
+  VelocityProducts(tree_, &ws_);
+  for (size_t l = 0; l < tree_.loops.size(); ++l) {
+    LoopBias(tree_, ws_, static_cast<int>(l), s, d->data() + tree_.loops[l].row);
+  }
+}
+
+Screw GraspedMechanism::GraspBias() const noexcept {
+  const ScrewWorkspace::Node& node = ws_.at(grasp_.node);
+  const Screw A = node.A - ws_.at(-1).A;
+  const Four a = VelocityAt(G_.p, A) + Cross(node.V.angular, VelocityAt(G_.p, node.V));
+  return {a, A.angular};
+}
+
+void GraspedMechanism::SetAccelerations(const VectorXd& vdot) noexcept {
+  ForwardAccelerations(tree_, vdot.data(), &ws_);
+}
+
+void GraspedMechanism::ComputeForces(VectorXd* tau) noexcept {
+  GyroscopicWrenches(tree_, inertias_, &ws_);
+  NewtonEuler(tree_, inertias_, &ws_, tau->data());
+}
+
+void GraspedMechanism::LoadJoints(const Screw& w, const VectorXd& mu,
+                                  std::vector<Wrenchd>* joints) noexcept {
+  NewtonEuler(tree_, inertias_, &ws_, nullptr);
+  const Screw hand = WrenchAt(G_.p, w.linear, w.angular);
+  for (int n = grasp_.node; n >= 0; n = tree_.nodes[n].parent) ws_.at(n).F -= hand;
+  for (size_t l = 0; l < tree_.loops.size(); ++l) {
+    const Loop& loop = tree_.loops[l];
+    const LoopScrews& s = ws_.loops[l];
+    Screw W;
+    for (int k = 0; k < loop.rows; ++k) W -= mu[loop.row + k] * s.rows[k];
+    for (const LoopNode& n : loop.path) ws_.at(n.node).F -= n.sign * W;
+    (*joints)[loop.joint] = WrenchIn(s.F, W);
+  }
+  for (size_t j = 0; j < joints->size(); ++j) {
+    const JointPlacement& place = tree_.placements[j];
+    if (place.tree_node < 0) continue;
+    const Axes F = ws_.at(place.first_node).X * place.X_AF;
+    const Four p_WM = PointInWorld(ws_.at(place.second_node).X, place.X_BM.p);
+    const Screw& W = ws_.at(place.tree_node).F;
+    const double sign = tree_.nodes[place.tree_node].reversed ? -1 : 1;
+    (*joints)[j] = WrenchIn({F.x, F.y, F.z, p_WM}, sign * W);
+  }
+}
+
+double GraspedMechanism::KineticEnergy() const noexcept {
+  return vmech::KineticEnergy(tree_, inertias_, ws_);
+}
+
+void RefuseUnrenderedFriction(const KinematicTree& tree) {
+  for (const Joint& joint : tree.mechanism.joints) {
+    if (joint.load_friction.coefficient == 0) continue;
+    throw std::invalid_argument(fmt::format(
+        "joint '{}': friction in proportion to the load is not rendered to a hand; give "
+        "it `coulomb` or `viscous` friction",
+        joint.name));
+  }
+  for (const Loop& loop : tree.loops) {
+    const Joint& joint = tree.mechanism.joints[loop.joint];
+    if (std::none_of(joint.passive.begin(), joint.passive.end(), IsPassive)) continue;
+    throw std::invalid_argument(
+        fmt::format("joint '{}' is cut, but has a spring or friction; name another joint in `cuts`",
+                    joint.name));
+  }
+}
+
+bool IsPassive(const Passive& passive) {
+  return passive.stiffness != 0 || passive.viscous != 0 || passive.coulomb != 0;
+}
+
+}  // namespace vmech

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <vector>
+
+#include "vmech/dynamics/rigid_body/screw_dynamics.h"
+#include "vmech/kinematics/inverse/inverse_kinematics.h"
+
+namespace vmech {
+
+/// A mechanism in a hand at one pose, with memory: the grasp's Jacobian J, the loops' C, and what
+/// the joints carry. The common ground of HandDynamics and CoupledDynamics. Nothing allocates after
+/// construction.
+class GraspedMechanism {
+ public:
+  /// Keeps a reference to the tree.
+  GraspedMechanism(const KinematicTree& tree, const GraspFrame& grasp);
+
+  /// Another grasp frame, from the next Set on.
+  void SetGrasp(const GraspFrame& grasp) noexcept { grasp_ = grasp; }
+  const GraspFrame& grasp() const noexcept { return grasp_; }
+
+  /// Takes q [nq].
+  void Set(const VectorXd& q) noexcept;
+  /// The first half of Set, nodes and loop errors, as needed between two steps of a closure.
+  void SetLoops(const VectorXd& q) noexcept;
+  /// The other half: grasp frame, Jacobians and inertias.
+  void SetJacobians() noexcept;
+
+  Posed X_WG() const noexcept;
+  const Axes& grasp_axes() const noexcept { return G_; }  ///< the same
+  Posed X_WB(int node) const noexcept;
+  Matrix6Xd J() const;  ///< [6, nv], V_WG = J v
+  /// B [8, nv] = root J with zeros below either three rows: B'B = J' root^2 J.
+  void ComputeWeightedJacobian(const Screw& root, MatrixXd* B) const noexcept;
+  /// [rows, nv], C v = 0; lengths over the characteristic length, padded with rows of zeros.
+  const MatrixXd& C() const noexcept { return C_; }
+  const VectorXd& e2() const noexcept { return e2_; }  ///< loop errors, scaled and padded like C
+
+  // Twists and wrenches of the grasp frame: about Go.
+  Screw Twist(const VectorXd& v) const noexcept;                 ///< J v
+  void AddForces(const Screw& w, VectorXd* tau) const noexcept;  ///< tau += J'w
+
+  /// M [nv, nv], which was zero in the beginning.
+  void ComputeMassMatrix(MatrixXd* M) noexcept;
+
+  /// Takes v [nv].
+  void SetVelocities(const VectorXd& v) noexcept;
+  double KineticEnergy() const noexcept;  ///< at these [J]
+  /// Takes v' = 0, and finds what comes of v alone, as all that follows needs it; d = s C' v,
+  /// scaled and padded like C.
+  void ComputeLoopBias(double s, VectorXd* d) noexcept;
+  /// The acceleration of Go for v' = 0.
+  Screw GraspBias() const noexcept;
+  /// Takes v' [nv].
+  void SetAccelerations(const VectorXd& vdot) noexcept;
+  /// M v' + h [nv].
+  void ComputeForces(VectorXd* tau) noexcept;
+  /// Joint by joint of the mechanism, what the first link exerts on the second about the second
+  /// anchor's origin, axes of the first anchor, while a hand exerts w at Go and the loops the
+  /// multipliers of M v' + h = J' w - C' mu.
+  void LoadJoints(const Screw& w, const VectorXd& mu, std::vector<Wrenchd>* joints) noexcept;
+
+  /// Zero with all centres of gravity at the height of Wo [J].
+  double WeightEnergy() const noexcept { return vmech::WeightEnergy(tree_, inertias_); }
+
+ private:
+  const KinematicTree& tree_;
+  GraspFrame grasp_;
+  VectorXd row_scale_;
+  ScrewWorkspace ws_;
+  ScrewInertias inertias_;
+  Axes G_;                // of the grasp frame
+  std::vector<Screw> J_;  // columns
+  MatrixXd C_;
+  VectorXd e2_;
+};
+
+/// Friction in proportion to a joint's load, and springs or friction at a cut joint, are beyond
+/// these paths. @throws std::invalid_argument naming the joint.
+void RefuseUnrenderedFriction(const KinematicTree& tree);
+
+/// Does this freedom have a spring or friction?
+bool IsPassive(const Passive& passive);
+
+/// Dry friction builds up in proportion to the speed until here [m/s] or [rad/s].
+inline constexpr double kSlowSliding = 1e-2;
+
+}  // namespace vmech

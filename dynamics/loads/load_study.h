@@ -1,0 +1,77 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/reactions/rule.h"
+#include "vmech/kinematics/motion/motion_law.h"
+#include "vmech/mechanisms/mechanism.h"
+
+namespace vmech {
+
+/// A motor at a joint: one freedom of the joint moves as prescribed, whatever force that takes.
+struct JointDrive {
+  int joint = -1;
+  int freedom = 0;
+  MotionLaw law = MotionLaw::Uniform(0, 0);
+};
+
+/// A hand at a grasp: the mechanism follows it as closely as its loops allow (paper eq. 7).
+struct HandDrive {
+  int grasp = -1;
+  HandLaw law;
+  /// Weights of the pose error [N/m] and [N m/rad] (the rendering stiffness of paper eq. 11). Zero
+  /// takes 1 N/m, and the square of the mechanism's characteristic length for rotations.
+  Vector6d stiffness = Vector6d::Zero();
+};
+
+/// A wrench from outside on a link.
+struct ExternalLoad {
+  enum class Axes { kWorld, kLink };
+  enum class Over { kConstant, kTime, kDriveCoordinate };
+
+  int link = -1;
+  Vector3d p_L = Vector3d::Zero();  ///< point of application in the link's drawing frame [m]
+  Axes axes = Axes::kWorld;
+  Over over = Over::kConstant;
+  /// Rows of the table, increasing; a single row where constant. Linear between rows.
+  std::vector<double> at;
+  std::vector<Wrenchd> wrenches;
+  /// Length after which the table repeats, in units of `at`; 0 if it does not. Outside a table that
+  /// does not repeat the study is refused.
+  double period = 0;
+};
+
+/// What is to be computed: a mechanism, its motion, and what acts on it.
+struct LoadStudy {
+  Mechanism mechanism;
+  std::vector<JointDrive> drives;  ///< empty if the hand drives, or for a structure at rest
+  std::optional<HandDrive> hand;
+  std::vector<double> times;  ///< of the poses, increasing [s]
+  /// Length of the cycle [s] if the motion repeats after it; 0 if it is one passage.
+  double cycle = 0;
+  std::vector<ExternalLoad> external;
+  ReactionRule rule = ReactionRule::kStiffness;
+  bool stop_at_limits = false;  ///< refuse a motion that leaves the limits of a joint
+  /// Of messages: those of the study's figures.
+  DisplayUnits units;
+  /// The length by which `minimum_norm` weighs moments against forces [m]; 0 takes the mechanism's
+  /// characteristic length.
+  double norm_length = 0;
+};
+
+struct LoadStudyOptions {
+  int threads = 1;                   ///< 1..64; the result does not depend on it
+  double closure_tolerance = 1e-13;  ///< largest loop error that counts as closed, of the
+                                     ///< characteristic length and of 1 rad
+  bool link_motions = true;          ///< whether PoseLoads::links is wanted
+  /// Called now and then with the number of poses done; false stops the study.
+  std::function<bool(size_t done)> progress;
+
+  void Validate() const;
+};
+
+}  // namespace vmech

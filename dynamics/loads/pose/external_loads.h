@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "vmech/dynamics/loads/pose/load_workspace.h"
+#include "vmech/dynamics/loads/pose/study_motion.h"
+
+namespace vmech {
+
+/// The load's wrench at a value of its table's argument, in its own axes. Linear between rows.
+/// Precondition: inside the table, unless it repeats (LoadOutsideTable).
+Wrenchd WrenchAt(const ExternalLoad& load, double at);
+/// Is the argument outside a table that does not repeat?
+bool OutsideTable(const ExternalLoad& load, double at);
+/// Time, the first drive's coordinate, or zero: the argument of a load's table at a pose.
+double TableArgument(const LoadModel& model, const ExternalLoad& load, const Motion& motion,
+                     size_t pose);
+
+/// All external wrenches at the poses `pose`, ... about their points of application, world axes.
+/// Needs X_WB; writes ws->external_W.
+template <typename T>
+void EvaluateExternalLoads(const LoadModel& model, const Motion& motion, size_t pose,
+                           LoadWorkspace<T>* ws);
+
+}  // namespace vmech

@@ -1,0 +1,149 @@
+#include "vmech/dynamics/loads/pose/idle_freedoms.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "vmech/base/linear_algebra/linear_algebra.h"
+#include "vmech/dynamics/loads/pose/hand_wrench.h"
+#include "vmech/dynamics/rigid_body/newton_euler.h"
+#include "vmech/kinematics/tree/forward_kinematics.h"
+#include "vmech/kinematics/tree/jacobian.h"
+
+namespace vmech {
+namespace {
+
+/// Momentum of all links in the velocities v, as the generalised momentum M v along each idle
+/// motion: N_i' M v. Uses node velocities as scratch.
+VectorXd IdleMomentum(const LoadModel& model, const VectorXd& v, LoadWorkspace<double>* ws) {
+  // M v is the inverse dynamics of the accelerations v at rest without gravity.
+  const std::vector<Wrenchd> nothing(model.tree.nodes.size());
+  const VectorXd rest = VectorXd::Zero(model.tree.nv);
+  ForwardVelocities(model.tree, rest.data(), &ws->tree);
+  ForwardAccelerations<double>(model.tree, rest.data(), v.data(), &ws->tree);
+  RecursiveNewtonEuler<double>(model.tree, Vector3d::Zero(), nothing.data(), &ws->tree);
+  VectorXd momentum = VectorXd::Zero(model.tree.nv);
+  GeneralisedForces(model.tree, ws->tree, momentum.data());
+  return ws->idle_motions.transpose() * momentum;
+}
+
+MatrixXd IdleInertia(const LoadModel& model, LoadWorkspace<double>* ws) {
+  MatrixXd inertia(model.idle, model.idle);
+  for (Eigen::Index k = 0; k < model.idle; ++k) {
+    inertia.col(k) = IdleMomentum(model, ws->idle_motions.col(k), ws);
+  }
+  return inertia;
+}
+
+/// H^-1 f, with f the links' displacement from `before` along each idle motion and H the inertia of
+/// the idle motions. Uses node velocities as scratch.
+VectorXd IdleShares(const LoadModel& model, const std::vector<Posed>& before, const MatrixXd& N,
+                    TreeWorkspace<double>* ws) {
+  MatrixXd H = MatrixXd::Zero(N.cols(), N.cols());
+  VectorXd f = VectorXd::Zero(N.cols());
+  std::vector<MatrixXd> momentum(model.tree.nodes.size()), motion(model.tree.nodes.size());
+  for (size_t i = 0; i < motion.size(); ++i) {
+    motion[i] = MatrixXd::Zero(6, N.cols());
+    momentum[i] = motion[i];
+  }
+  for (Eigen::Index k = 0; k < N.cols(); ++k) {
+    const VectorXd v = N.col(k);
+    ForwardVelocities(model.tree, v.data(), ws);
+    for (size_t i = 0; i < motion.size(); ++i) {
+      const TreeNode& node = model.tree.nodes[i];
+      const NodeState<double>& s = ws->nodes[i];
+      const Vector3d v_cm = s.v + s.w.cross(s.X_WB.R * node.p_BoBcm);
+      const Vector3d spin = s.X_WB.R * (node.I_Bcm * (s.X_WB.R.transpose() * s.w));
+      motion[i].col(k) << v_cm, s.w;
+      momentum[i].col(k) << node.mass * v_cm, spin;
+    }
+  }
+  for (size_t i = 0; i < motion.size(); ++i) {
+    const Posed& X_WB = ws->nodes[i].X_WB;
+    const Eigen::AngleAxisd turn(Matrix3d(X_WB.R * before[i].R.transpose()));
+    Vector6d d;
+    d << X_WB * model.tree.nodes[i].p_BoBcm - before[i].p, turn.angle() * turn.axis();
+    f += momentum[i].transpose() * d;
+    H += momentum[i].transpose() * motion[i];
+  }
+  return SolveAboveFloor(H, f, model.no_inertia);
+}
+
+/// The motions N among which the hand cannot tell, as combinations of the columns.
+MatrixXd UnseenByHand(const LoadModel& model, const TreeWorkspace<double>& ws, const MatrixXd& N) {
+  const MatrixXd seen = WeightedGraspMotions(model, ws, N);
+  return N * FindLeftSingularVectors(seen.transpose()).vectors.rightCols(model.idle);
+}
+
+MatrixXd IdleAmong(const LoadModel& model, const TreeWorkspace<double>& ws, const MatrixXd& N) {
+  return model.hand ? UnseenByHand(model, ws, N) : MatrixXd(N.rightCols(model.idle));
+}
+
+}  // namespace
+
+void FindMotions(const LoadModel& model, LoadWorkspace<double>* ws) {
+  FreeMotions(ws->tree, &ws->dependents, &ws->motions);
+  if (model.idle > 0) ws->idle_motions = IdleAmong(model, ws->tree, ws->motions);
+}
+
+void RemoveIdleMomentum(const LoadModel& model, LoadWorkspace<double>* ws) {
+  if (model.idle_is_held) return;
+  const VectorXd rate =
+      SolveAboveFloor(IdleInertia(model, ws), IdleMomentum(model, ws->v, ws), model.no_inertia);
+  ws->v -= ws->idle_motions * rate;
+}
+
+void SettleIdleFreedoms(const LoadModel& model, LoadWorkspace<double>* ws) {
+  if (model.idle_is_held) return;
+  const auto open = [&]() -> VectorXd {
+    return ws->idle_motions.transpose() * (ws->tau - ws->passive);
+  };
+  ws->vdot -= ws->idle_motions * SolveAboveFloor(IdleInertia(model, ws), open(), model.no_inertia);
+  ForwardVelocities(model.tree, ws->v.data(), &ws->tree);
+  ForwardAccelerations<double>(model.tree, ws->v.data(), ws->vdot.data(), &ws->tree);
+  RecursiveNewtonEuler<double>(model.tree, model.tree.mechanism.gravity_W, ws->applied.data(),
+                               &ws->tree);
+  GeneralisedForces(model.tree, ws->tree, ws->tau.data());
+  ws->unresisted = open().cwiseAbs().maxCoeff();
+}
+
+void IdlePositions::Remember(const TreeWorkspace<double>& ws) {
+  before_.clear();
+  for (size_t i = 0; i < ws.nodes.size(); ++i) {
+    const Posed& X_WB = ws.nodes[i].X_WB;
+    before_.push_back({X_WB.R, X_WB * model_.tree.nodes[i].p_BoBcm});
+  }
+}
+
+void IdlePositions::Settle(double tolerance, DependentSolver<double>* dependents,
+                           TreeWorkspace<double>* ws, VectorXd* q) const {
+  constexpr int kMaxSteps = 20, kClosingSteps = 6;
+  constexpr double kSettled = 1e-14;  // [rad]
+  if (model_.idle_is_held) return;
+  const CoordinatePartition& partition = dependents->partition();
+  MatrixXd N(model_.tree.nv,
+             static_cast<Eigen::Index>(partition.driven.size() + partition.idle.size()));
+  for (int step = 0; step < kMaxSteps; ++step) {
+    EvaluatePose(model_.tree, *q, ws);
+    dependents->Factor(*ws);
+    FreeMotions(*ws, dependents, &N);
+    const MatrixXd idle = IdleAmong(model_, *ws, N);
+    const VectorXd shift = -IdleShares(model_, before_, idle, ws);
+    MoveCoordinates(model_.tree, idle * shift, q);
+    CloseByNewton(model_.tree, tolerance, kClosingSteps, dependents, ws, q->data());
+    if (shift.cwiseAbs().maxCoeff() < kSettled) return;
+  }
+}
+
+double ShiftOfCentres(const KinematicTree& tree, const VectorXd& v, TreeWorkspace<double>* ws) {
+  ForwardVelocities(tree, v.data(), ws);
+  double shift = 0;
+  for (size_t i = 0; i < tree.nodes.size(); ++i) {
+    if (tree.nodes[i].mass == 0) continue;
+    const NodeState<double>& s = ws->nodes[i];
+    const Vector3d c = s.X_WB.R * tree.nodes[i].p_BoBcm;
+    shift = std::max(shift, (s.v + s.w.cross(c)).norm() / tree.length);
+  }
+  return shift;
+}
+
+}  // namespace vmech

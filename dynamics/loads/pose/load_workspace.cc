@@ -1,0 +1,36 @@
+#include "vmech/dynamics/loads/pose/load_workspace.h"
+
+#include "vmech/base/packet.h"
+
+namespace vmech {
+
+template <typename T>
+LoadWorkspace<T>::LoadWorkspace(const LoadModel& model)
+    : tree(model.tree),
+      dependents(model.tree, model.partition),
+      reactions(model.tree, model.partition, model.compliances),
+      joints(model.tree.mechanism.joints.size()),
+      applied(model.tree.nodes.size()),
+      cut_passive(model.tree.loops.size()),
+      sliding(joints.size(), Vector3<T>::Zero()),
+      along(joints.size(), Vector3<T>::Zero()),
+      external_W(model.external.size()),
+      q(VectorX::Zero(model.tree.nq)),
+      v(VectorX::Zero(model.tree.nv)),
+      vdot(VectorX::Zero(model.tree.nv)),
+      tau(VectorX::Zero(model.tree.nv)),
+      passive(VectorX::Zero(model.tree.nv)),
+      open(VectorX::Zero(model.tree.nv)),
+      mu(VectorX::Zero(model.tree.rows)),
+      loads(joints.size(), {{}, Vector3<T>::Zero(), Vector3<T>::Zero()}),
+      drive_forces(model.drives.size(), T(0)) {
+  const CoordinatePartition& p = model.partition;
+  if (model.hand || !p.idle.empty()) {
+    motions = MatrixXd::Zero(model.tree.nv, static_cast<int>(p.driven.size() + p.idle.size()));
+  }
+}
+
+template struct LoadWorkspace<double>;
+template struct LoadWorkspace<Packet>;
+
+}  // namespace vmech

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <vector>
+
+#include "vmech/dynamics/loads/pose/friction_iteration.h"
+#include "vmech/dynamics/loads/pose/joint_load.h"
+#include "vmech/dynamics/loads/pose/load_model.h"
+#include "vmech/kinematics/loops/closure.h"
+
+namespace vmech {
+
+/// A contact at rest that would slide if the drives that stand still crept.
+struct RestingContact {
+  int joint = -1;
+  Eigen::Matrix3Xd creep;    ///< [3, standing drives] rates of the joint; zero but in this contact
+  Eigen::Matrix3Xd limited;  ///< the same, each rate times the limit of its friction
+  double weight = 0;
+};
+
+/// Memory for one thread, for one model that must outlive it. T is double for one pose at a time,
+/// or Packet for four in a row.
+template <typename T>
+struct LoadWorkspace {
+  using VectorX = Eigen::Matrix<T, Eigen::Dynamic, 1>;
+
+  explicit LoadWorkspace(const LoadModel& model);
+
+  TreeWorkspace<T> tree;
+  DependentSolver<T> dependents;
+  ReactionSolver<T> reactions;
+  std::vector<JointState<T>> joints;
+  std::vector<Wrench<T>> applied;      ///< per node about Bo, from outside
+  std::vector<Wrench<T>> cut_passive;  ///< per loop: springs and friction of the cut joint, in F
+  std::vector<Vector3<T>> sliding;     ///< per joint: its rates, zero where it rests
+  std::vector<Vector3<T>> along;       ///< per joint: springs and friction along its freedoms
+  std::vector<Wrench<T>> external_W;   ///< the external loads about their points, world axes
+  VectorX q, v, vdot;
+  VectorX tau;       ///< needed along each freedom
+  VectorX passive;   ///< supplied by springs and friction
+  VectorX open;      ///< what is left for drives and multipliers
+  VectorX mu;        ///< multipliers of the cut joints
+  MatrixXd motions;  ///< [nv, independent]: free motions, where the hand or idle freedoms need them
+  MatrixXd idle_motions;  ///< [nv, idle]: those of them that are idle
+  MatrixXd creep;         ///< [nv, standing drives]: the motion as each of them begins to move
+  std::vector<Vector3d> creep_rates;  ///< [standing drives * joints]
+  std::vector<RestingContact> resting;
+  VectorXd holding;  ///< [standing drives] y of resting_friction.h
+  int holding_passes = 0;
+  FrictionIteration friction;
+
+  // What comes out, beside `tree`.
+  std::vector<JointLoad<T>> loads;  ///< per joint
+  std::vector<T> drive_forces;
+  Wrench<T> hand;         ///< w_d at Go, world axes
+  double unresisted = 0;  ///< largest force along an idle freedom without inertia [N], [N m]
+  T power, power_gap, power_size, closure;  ///< power_gap: of the balance; power_size: its terms
+  bool jammed = false;
+  int locking_joint = -1;
+  bool held_by_friction = false;
+};
+
+}  // namespace vmech

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/pose/load_model.h"
+#include "vmech/dynamics/loads/pose/load_workspace.h"
+#include "vmech/dynamics/loads/pose/study_motion.h"
+
+namespace vmech {
+
+/// Can a packet of poses be evaluated at once? Not where the hand, idle freedoms or friction under
+/// load ask for dense systems or iterations of each pose's own.
+bool RunsInPackets(const LoadModel& model);
+
+/// Velocities, accelerations, drive forces and the wrench of every joint at the closed poses
+/// `pose`, `pose` + 1, ... (as many as T has lanes), from scratch: the same input gives the same
+/// bits. Returns false if one of them is a dead centre, where the drive does not determine the
+/// motion, or if one of a packet is a pose at rest, whose friction is found pose by pose; what ws
+/// holds is then not to be used.
+template <typename T>
+[[nodiscard]] bool EvaluatePoseLoads(const LoadModel& model, const Motion& motion, size_t pose,
+                                     LoadWorkspace<T>* ws);
+
+/// Copies what was computed last to poses[0], poses[1], ... (as many as T has lanes), with the
+/// motion of every link if wanted. They keep their memory.
+template <typename T>
+void StorePoseLoads(const LoadModel& model, const Motion& motion, size_t pose,
+                    const LoadWorkspace<T>& ws, bool link_motions, PoseLoads* poses);
+
+}  // namespace vmech

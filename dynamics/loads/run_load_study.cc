@@ -1,0 +1,355 @@
+#include "vmech/dynamics/loads/run_load_study.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <thread>
+
+#include "vmech/base/packet.h"
+#include "vmech/dynamics/loads/friction_report.h"
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/open_components.h"
+#include "vmech/dynamics/loads/pose/external_loads.h"
+#include "vmech/dynamics/loads/pose/pose_loads.h"
+#include "vmech/dynamics/loads/prepare_study.h"
+#include "vmech/dynamics/loads/rule_dependence.h"
+#include "vmech/dynamics/loads/study_plausibility.h"
+#include "vmech/dynamics/loads/track_motion.h"
+#include "vmech/mechanisms/freedoms.h"
+
+namespace vmech {
+namespace {
+
+constexpr size_t kChunk = 64;             // poses a thread takes at a time
+constexpr double kNearDeadCentre = 1e-8;  // pivots are squares; looked at closely below this
+
+void RequireInsideTables(const LoadModel& model, const Motion& motion) {
+  for (size_t i = 0; i < motion.size(); ++i) {
+    for (const ExternalLoad& load : model.external) {
+      const double at = TableArgument(model, load, motion, i);
+      if (!OutsideTable(load, at)) continue;
+      throw std::invalid_argument(fmt::format(
+          "pose {}: the table of the external load on link '{}' covers {:.6g} to {:.6g}, but "
+          "{:.6g} "
+          "is asked for; extend the table or give it a `period`",
+          i, model.tree.mechanism.links[load.link].name, load.at.front(), load.at.back(), at));
+    }
+  }
+}
+
+/// Evaluates all poses on several threads; each pose depends on its own input only.
+class ParallelEvaluation {
+ public:
+  ParallelEvaluation(const LoadStudy& study, const LoadModel& model, const Motion& motion,
+                     const LoadStudyOptions& options, LoadStudyResult* result)
+      : study_(study), model_(model), motion_(motion), options_(options), poses_(result->poses) {}
+
+  void Run() {
+    const size_t chunks = (motion_.size() + kChunk - 1) / kChunk;
+    const size_t helpers = std::min<size_t>(options_.threads, std::max<size_t>(chunks, 1)) - 1;
+    std::vector<std::thread> threads;
+    for (size_t i = 0; i < helpers; ++i) threads.emplace_back([this] { Work(false); });
+    Work(true);
+    for (std::thread& thread : threads) thread.join();
+    if (stopped_) throw std::runtime_error("the study was stopped before its end");
+    if (dead_centre_ < motion_.size()) ReportDeadCentre(dead_centre_);
+  }
+
+ private:
+  void Work(bool reports) {
+    LoadWorkspace<double> ws(model_);
+    LoadWorkspace<Packet> packet_ws(model_);
+    const bool in_packets = RunsInPackets(model_);
+    for (;;) {
+      const size_t begin = next_.fetch_add(kChunk);
+      if (begin >= motion_.size() || stopped_) return;
+      const size_t end = std::min(begin + kChunk, motion_.size());
+      for (size_t i = begin; i < end;) {
+        if (in_packets && i + Packet::kLanes <= end && Evaluate(i, &packet_ws)) {
+          i += Packet::kLanes;
+        } else if (Evaluate(i, &ws)) {
+          ++i;
+        } else {
+          RememberDeadCentre(i++);
+        }
+      }
+      done_ += end - begin;
+      if (reports && options_.progress && !options_.progress(done_)) stopped_ = true;
+    }
+  }
+
+  template <typename T>
+  bool Evaluate(size_t i, LoadWorkspace<T>* ws) {
+    if (!EvaluatePoseLoads(model_, motion_, i, ws)) return false;
+    StorePoseLoads(model_, motion_, i, *ws, options_.link_motions, &poses_[i]);
+    return true;
+  }
+
+  /// The first dead centre, whichever thread finds it.
+  void RememberDeadCentre(size_t i) {
+    size_t first = dead_centre_;
+    while (i < first && !dead_centre_.compare_exchange_weak(first, i)) {
+    }
+  }
+
+  [[noreturn]] void ReportDeadCentre(size_t i) const {
+    std::vector<double> positions;
+    for (size_t k = 0; k < study_.drives.size(); ++k) {
+      positions.push_back(motion_.drives[i * study_.drives.size() + k].position);
+    }
+    throw std::runtime_error(
+        fmt::format("pose {} (t = {:.6g} s) is a dead centre: {} the drive does not determine how "
+                    "the mechanism "
+                    "moves on, and no drive force holds it. {}",
+                    i, motion_.times[i], DrivesAt(study_, positions), kPastDeadCentre));
+  }
+
+  const LoadStudy& study_;
+  const LoadModel& model_;
+  const Motion& motion_;
+  const LoadStudyOptions& options_;
+  PoseArray<PoseLoads>& poses_;
+  std::atomic<size_t> next_{0}, done_{0};
+  std::atomic<size_t> dead_centre_{std::numeric_limits<size_t>::max()};
+  std::atomic<bool> stopped_{false};
+};
+
+void SizePoses(const LoadModel& model, const LoadStudyOptions& options, size_t count,
+               LoadStudyResult* result) {
+  const Mechanism& mechanism = model.tree.mechanism;
+  const size_t links = options.link_motions ? mechanism.links.size() : 0;
+  const size_t each = PoseLoads::Size(model.drives.size(), mechanism.joints.size(), links);
+  result->memory =
+      std::make_shared<PoseArena>(PoseArena::Rounded(count * sizeof(PoseLoads)) + count * each);
+  PoseArena* memory = result->memory.get();
+  result->poses = PoseArray<PoseLoads>(PoseAllocator<PoseLoads>(memory));
+  result->poses.reserve(count);
+  for (size_t i = 0; i < count; ++i) result->poses.emplace_back(memory);
+}
+
+/// Poses at which certainty is judged: evenly spread, a dozen or so.
+std::vector<size_t> JudgedPoses(size_t count) {
+  constexpr size_t kJudged = 13;
+  std::vector<size_t> judged;
+  for (size_t i = 0; i < std::min(count, kJudged); ++i)
+    judged.push_back(i * count / std::min(count, kJudged));
+  return judged;
+}
+
+/// What depends on the choices that are the user's is not determined.
+void AddRuleDependence(const PreparedStudy& prepared, const Motion& motion,
+                       const std::vector<size_t>& poses, LoadStudyResult* result) {
+  const LoadModel& model = prepared.model;
+  result->drive_certainty.assign(model.drives.size(), Certainty::kCertain);
+  const bool settled_by_choice = model.has_load_friction || model.hand;
+  const bool by_rule = model.rule == ReactionRule::kPaperJoint;
+  if (by_rule || !(settled_by_choice || AnyNotDetermined(*result))) {
+    result->open = FindOpenComponents(*result, nullptr, model.tree.length);
+    return;
+  }
+  const RuleDependence dependence = FindRuleDependence(prepared, motion, poses);
+  for (size_t j = 0; settled_by_choice && j < result->certainty.size(); ++j) {
+    for (int k = 0; k < 6; ++k) {
+      if (dependence.joints[j][k]) result->certainty[j][k] = Certainty::kNotDetermined;
+    }
+  }
+  result->open = FindOpenComponents(*result, &dependence, model.tree.length);
+  if (!settled_by_choice) return;
+  std::string drives;
+  for (size_t k = 0; k < model.drives.size(); ++k) {
+    if (!dependence.drives[k]) continue;
+    result->drive_certainty[k] = Certainty::kNotDetermined;
+    const JointDrive& drive = model.drives[k];
+    drives += fmt::format("{}'{}'", drives.empty() ? "" : ", ",
+                          NameOfFreedom(model.tree.mechanism.joints[drive.joint], drive.freedom));
+  }
+  if (drives.empty()) return;
+  result->warnings.push_back(fmt::format(
+      "the force of the drive at {} is not determined by statics: friction depends on loads that "
+      "the rule '{}' settles",
+      drives, NameOf(model.rule)));
+}
+
+/// What statics leaves open at any pose it leaves open; singular counts only if it is so
+/// everywhere.
+std::vector<JointCertainty> JudgeStudy(const LoadModel& model, const Motion& motion,
+                                       const std::vector<size_t>& poses) {
+  std::vector<JointCertainty> verdict;
+  for (size_t i : poses) {
+    const auto here = JudgeCertainty(model.tree, model.partition, motion.q(i), model.rounding);
+    if (verdict.empty()) {
+      verdict = here;
+      continue;
+    }
+    for (size_t j = 0; j < here.size(); ++j) {
+      for (int k = 0; k < 6; ++k) {
+        if (here[j][k] == Certainty::kNotDetermined || verdict[j][k] == Certainty::kSingular) {
+          verdict[j][k] = here[j][k];
+        }
+      }
+    }
+  }
+  return verdict;
+}
+
+/// The larger one; what is not a number is, too.
+double Larger(double a, double b) {
+  return std::isnan(a) || (a > b && !std::isnan(b)) ? a : b;
+}
+
+/// Figures that overflow have no answer.
+void RequireFinite(const LoadStudyResult& result) {
+  for (size_t i = 0; i < result.poses.size(); ++i) {
+    const PoseLoads& pose = result.poses[i];
+    bool finite = pose.hand.Stacked().allFinite() && std::isfinite(pose.power_error_scale);
+    for (const DriveSample& drive : pose.drives) finite = finite && std::isfinite(drive.force);
+    for (const JointSample& joint : pose.joints) finite = finite && joint.Stacked().allFinite();
+    if (finite) continue;
+    throw std::runtime_error(fmt::format(
+        "pose {} (t = {:.6g} s): the loads are too large to be computed; check the units of "
+        "masses, inertias, speeds and external loads",
+        i, pose.time));
+  }
+}
+
+double LargestForce(const LoadStudyResult& result) {
+  double largest = 0;
+  for (const PoseLoads& pose : result.poses) {
+    largest = Larger(pose.hand.force.norm(), largest);
+    for (const JointSample& joint : pose.joints) largest = Larger(joint.force.norm(), largest);
+  }
+  return largest;
+}
+
+/// The errors of the self-checks. Powers are measured by the largest of the study: at a pose where
+/// they all but vanish their balance is that of the rounding of others. So it is where nothing
+/// moves; a length in three years is no motion.
+void CheckBalance(double length, LoadStudyResult* result) {
+  constexpr double kAtRest = 1e-8;  // [1/s]
+  double largest = kAtRest * length * LargestForce(*result);
+  for (const PoseLoads& pose : result->poses) largest = Larger(pose.power_error_scale, largest);
+  for (PoseLoads& pose : result->poses) {
+    if (pose.power_error != 0) pose.power_error /= largest;
+    result->max_closure = Larger(pose.closure, result->max_closure);
+    result->max_power_error = Larger(pose.power_error, result->max_power_error);
+  }
+}
+
+/// Where a motion is beyond the limits of one freedom.
+struct LimitPassed {
+  size_t poses = 0, first = 0, worst = 0;
+  double most = 0;  ///< at the worst pose [m] or [rad]
+};
+
+LimitPassed FindPassed(const LoadStudyResult& result, size_t joint, int freedom, double lower,
+                       double upper) {
+  constexpr double kOnLimit = 1e-9;  // [m, rad]
+  LimitPassed passed;
+  for (size_t i = 0; i < result.poses.size(); ++i) {
+    const double position = result.poses[i].joints[joint].position[freedom];
+    const double beyond = std::max(lower - position, position - upper);
+    if (!(beyond > kOnLimit)) continue;
+    if (passed.poses++ == 0) passed.first = i;
+    if (beyond <= passed.most) continue;
+    passed.most = beyond;
+    passed.worst = i;
+  }
+  return passed;
+}
+
+std::string DescribePassed(const LoadStudy& study, const LoadStudyResult& result, size_t j, int k,
+                           const LimitPassed& passed) {
+  const Joint& joint = study.mechanism.joints[j];
+  const auto text = [&](double value) { return FormatCoordinate(study.units, joint, k, value); };
+  return fmt::format(
+      "the motion leaves the limits {} to {} of joint '{}' at {} of {} poses, from pose {} (t = "
+      "{:.6g} s) on; by {} at most, at pose {}, where it is at {}",
+      text(joint.lower[k]), text(joint.upper[k]), NameOfFreedom(joint, k), passed.poses,
+      result.poses.size(), passed.first, result.poses[passed.first].time, text(passed.most),
+      passed.worst, text(result.poses[passed.worst].joints[j].position[k]));
+}
+
+/// Warns where the motion leaves the limits of a joint, or refuses it.
+void WatchLimits(const LoadStudy& study, LoadStudyResult* result) {
+  for (size_t j = 0; j < study.mechanism.joints.size(); ++j) {
+    const Joint& joint = study.mechanism.joints[j];
+    if (joint.type == JointType::kSpherical) continue;
+    for (int k = 0; k < FreedomsOf(joint.type); ++k) {
+      const LimitPassed passed = FindPassed(*result, j, k, joint.lower[k], joint.upper[k]);
+      if (passed.poses == 0) continue;
+      const std::string message = DescribePassed(study, *result, j, k, passed);
+      if (study.stop_at_limits) throw std::runtime_error(message);
+      result->warnings.push_back(message);
+    }
+  }
+}
+
+/// A load along a freedom without inertia has no answer.
+void RefuseUnresisted(const LoadModel& model, const LoadStudyResult& result) {
+  constexpr double kRounding = 1e-7;
+  const double largest = LargestForce(result) * std::max(1.0, model.tree.length);
+  for (size_t i = 0; i < result.poses.size(); ++i) {
+    const double unresisted = result.poses[i].unresisted;
+    if (unresisted <= kRounding * largest) continue;
+    throw std::runtime_error(fmt::format(
+        "pose {} (t = {:.6g} s): a load of {:.4g} N or N m acts along an idle freedom ({}), and "
+        "nothing resists it: no drive, no inertia. Leave the load out, or give the link inertia "
+        "and a drive",
+        i, result.poses[i].time, unresisted, fmt::join(result.idle, ", ")));
+  }
+}
+
+void Summarise(const LoadModel& model, const Motion& motion, LoadStudyResult* result) {
+  CheckBalance(model.tree.length, result);
+  RefuseUnresisted(model, *result);
+  for (size_t i = 0; i < result->poses.size(); ++i) {
+    const PoseLoads& pose = result->poses[i];
+    if (pose.smallest_pivot < kNearDeadCentre &&
+        DistanceFromDeadCentre(model.tree, model.partition, motion.q(i)) < kSingularTolerance) {
+      result->singular_poses.push_back(i);
+    }
+  }
+  AddFrictionWarnings(model.tree.mechanism, result);
+  if (!result->singular_poses.empty()) {
+    result->warnings.push_back(fmt::format(
+        "{} pose(s), the first of them {}, lie at a dead centre: loads grow without bound there",
+        result->singular_poses.size(), result->singular_poses.front()));
+  }
+}
+
+}  // namespace
+
+LoadStudyResult RunLoadStudy(const LoadStudy& study, const LoadStudyOptions& options) {
+  options.Validate();
+  PreparedStudy prepared = PrepareStudy(study);
+  const Motion motion = TrackMotion(study, prepared, options.closure_tolerance);
+  RequireInsideTables(prepared.model, motion);
+
+  LoadStudyResult result;
+  SizePoses(prepared.model, options, motion.size(), &result);
+  ParallelEvaluation(study, prepared.model, motion, options, &result).Run();
+  result.mobility = prepared.mobility.mobility;
+  result.redundant_equations = prepared.mobility.redundant;
+  for (const Loop& loop : prepared.model.tree.loops) {
+    result.cut_joints.push_back(study.mechanism.joints[loop.joint].name);
+  }
+  result.idle = prepared.idle;
+  result.norm_length = study.norm_length > 0 ? study.norm_length : prepared.model.tree.length;
+  result.warnings = prepared.warnings;
+  result.notes = prepared.notes;
+  RequireFinite(result);
+  for (std::string& doubt : DoubtsOf(study, result)) result.warnings.push_back(std::move(doubt));
+  const std::vector<size_t> judged = JudgedPoses(motion.size());
+  result.certainty = JudgeStudy(prepared.model, motion, judged);
+  AddRuleDependence(prepared, motion, judged, &result);
+  WatchLimits(study, &result);
+  Summarise(prepared.model, motion, &result);
+  return result;
+}
+
+}  // namespace vmech

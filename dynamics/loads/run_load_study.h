@@ -1,0 +1,14 @@
+#pragma once
+
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/load_study.h"
+
+namespace vmech {
+
+/// @throws std::invalid_argument for a study that contradicts itself, std::runtime_error with the
+///         pose and its time where the motion cannot be followed (a dead centre, out of reach),
+///         where it leaves limits at which it is to stop, or where a load acts on a freedom that
+///         nothing resists.
+LoadStudyResult RunLoadStudy(const LoadStudy& study, const LoadStudyOptions& options = {});
+
+}  // namespace vmech

@@ -1,0 +1,44 @@
+#include "vmech/hw_interface/loop/replay_master.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+namespace vmech {
+
+ReplayMaster::ReplayMaster(Recording recording, ReplayKind kind)
+    : recording_(std::move(recording)), kind_(kind) {
+  if (recording_.ticks.empty()) {
+    throw std::invalid_argument(
+        fmt::format("replay of '{}': the recording has no ticks", recording_.device));
+  }
+}
+
+DeviceInfo ReplayMaster::OnConfigure() {
+  DeviceInfo info;
+  info.period = recording_.period;
+  info.takes_wrench = true;
+  const std::uint32_t senses = recording_.ticks.front().state.valid;
+  if (kind_ == ReplayKind::kSession) {
+    info.name = recording_.device;
+    info.senses = senses;
+    info.delay = recording_.delay;
+    info.linear = recording_.linear;
+    info.angular = recording_.angular;
+  } else {
+    info.name = "replay of " + recording_.device;
+    info.senses = senses & ~(kSensesAppliedWrench | kSensesEcho);
+    info.linear.peak = info.angular.peak = 1e3;  // nothing is at work
+  }
+  return info;
+}
+
+IoStatus ReplayMaster::OnRead(std::int64_t, MasterState* state) noexcept {
+  if (finished()) return IoStatus::kNoNewData;
+  const TickRecord& tick = recording_.ticks[next_++];
+  *state = tick.state;
+  state->valid &= info().senses;
+  return kind_ == ReplayKind::kSession ? tick.io : IoStatus::kOk;
+}
+
+}  // namespace vmech

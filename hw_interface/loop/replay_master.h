@@ -1,0 +1,32 @@
+#pragma once
+
+#include "vmech/hw_interface/loop/recording.h"
+
+namespace vmech {
+
+enum class ReplayKind {
+  kHand,     ///< the hand only: no wrench is at work, whatever was
+  kSession,  ///< the device with its physics, the wrenches at work and the samples that were
+             ///< missing
+};
+
+/// A recording as a master: sample after sample, one per read, whatever is commanded.
+class ReplayMaster : public Master {
+ public:
+  /// @throws std::invalid_argument if the recording is empty.
+  explicit ReplayMaster(Recording recording, ReplayKind kind = ReplayKind::kHand);
+  ~ReplayMaster() override { Shutdown(); }
+
+  bool finished() const noexcept { return next_ == recording_.ticks.size(); }
+
+ private:
+  DeviceInfo OnConfigure() override;
+  IoStatus OnRead(std::int64_t now_ns, MasterState* state) noexcept override;
+  IoStatus OnWrite(const MasterCommand&) noexcept override { return IoStatus::kOk; }
+
+  Recording recording_;
+  ReplayKind kind_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace vmech

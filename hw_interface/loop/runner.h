@@ -1,0 +1,135 @@
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "vmech/base/nonblocking.h"
+#include "vmech/hw_interface/estimation/hand_observer.h"
+#include "vmech/hw_interface/loop/arm_torques.h"
+#include "vmech/hw_interface/loop/histogram.h"
+#include "vmech/hw_interface/loop/loop_clock.h"
+#include "vmech/hw_interface/loop/realtime.h"
+#include "vmech/hw_interface/rendering/tick.h"
+
+namespace vmech {
+
+struct RunnerOptions {
+  double seconds = 0;   ///< how long to run; 0: until Stop, in [0, 1e6]
+  bool record = false;  ///< keep every tick; needs `seconds`
+  int keep = 2000;      ///< last ticks that are kept in any case, in [1, 1e6]
+  /// Where the last ticks are written after a fault; empty: nowhere.
+  std::filesystem::path post_mortem;
+  RecordingNotes notes;  ///< for the recordings
+  int command_life = 5;  ///< periods after which the device drops a command by itself, in [1, 1000]
+  bool gripper = false;  ///< hold only while the gripper is closed, where the device senses it
+  bool joint_torques = true;             ///< where the device takes them; else wrenches
+  Matrix3d R_WD = Matrix3d::Identity();  ///< the device's axes in the mechanism's world
+  SafetyOptions safety;
+  HandObserverOptions observer;  ///< where the device is an arm that states itself
+  PostureOptions posture;
+  std::optional<RealtimeOptions> realtime = RealtimeOptions{};  ///< none: an ordinary thread
+
+  /// @throws std::invalid_argument naming field, value and range.
+  void Validate() const;
+};
+
+enum class RunStatus : std::uint8_t {
+  kNotRun,
+  kFinished,  ///< the time is over
+  kStopped,   ///< Stop was called
+  kFault,     ///< the safety filter latched or the tick failed; the motors are off
+};
+
+/// What came of a run; every figure was measured here.
+struct RunSummary {
+  RunStatus status = RunStatus::kNotRun;
+  ForceOff cause = ForceOff::kNone;  ///< of a fault
+  std::string device;
+  double period = 0;  ///< [s]
+  std::uint64_t ticks = 0;
+  std::uint64_t skipped = 0;          ///< slots that passed while the loop was late
+  std::uint64_t missed = 0;           ///< ticks without a new sample
+  std::uint64_t held = 0;             ///< ticks in which the mechanism could not follow
+  std::uint64_t grasps = 0;           ///< how often the hand took hold
+  Histogram late, interval, compute;  ///< [ns]; `interval` from wake-up to wake-up
+  SafetyCounters safety;
+  double peak_force = 0, peak_moment = 0;  ///< sent [N], [N m]
+  double least_energy = 0;                 ///< of the passivity observer [J]
+  RealtimeReport realtime;
+  std::filesystem::path post_mortem;  ///< what was written after a fault
+
+  std::string BriefReport() const;
+  std::string FullReport() const;
+};
+
+/// The newest figures of a running loop, for other threads.
+struct LiveStatus {
+  std::atomic<std::uint64_t> ticks = 0, skipped = 0;
+  std::atomic<double> force = 0;   ///< sent [N]
+  std::atomic<double> energy = 0;  ///< [J]
+  std::atomic<std::int64_t> compute_ns = 0;
+  std::atomic<ForceOff> off = ForceOff::kNotActive;
+};
+
+/// The loop around a tick: sleep until the slot, read, step, filter, write. Slots lie on a grid of
+/// the device's period; a late loop skips those that have passed and never catches up in a burst.
+/// It owns the gate: the master is active only while the loop runs. In a tick nothing allocates,
+/// locks, logs or throws.
+class Runner {
+ public:
+  /// `master` must be configured; it, `tick` and `clock` must outlive the runner.
+  /// @throws std::invalid_argument as the options' Validate and SafetyFilter.
+  Runner(const RunnerOptions& options, Master* master, Tick* tick, LoopClock* clock);
+
+  /// Activates the master, runs, deactivates it, writes the last ticks after a fault.
+  /// @throws what Master::Activate and WriteRecording throw.
+  RunSummary Run();
+
+  /// From any thread or a signal handler.
+  void Stop() noexcept { stop_ = true; }
+  /// The same, and counts as a fault.
+  void EmergencyStop() noexcept { emergency_stop_ = true; }
+
+  const LiveStatus& live() const noexcept { return live_; }
+  /// The ticks that were kept, oldest first.
+  Recording Kept() const;
+
+ private:
+  bool IsOver() const noexcept;
+  void RunSlot(std::int64_t slot_ns, TickRecord* record) noexcept;
+  IoStatus ReadMaster(std::int64_t slot_ns, MasterState* state) noexcept;
+  void Observe() noexcept;
+  TickOutput StepTick(IoStatus io, TickRecord* record) noexcept VMECH_NONBLOCKING;
+  void Register() noexcept;
+  void GraspOrLetGo() noexcept;
+  bool GripperCloses() const noexcept;
+  void Send(std::int64_t slot_ns, const SafetyOutput& safe) noexcept;
+  void Account(const TickRecord& record, std::int64_t now_ns) noexcept;
+  void Finish();
+  Recording LastTicks(std::uint64_t count) const;
+
+  RunnerOptions options_;
+  Master* master_;
+  Tick* tick_;
+  LoopClock* clock_;
+  double period_;
+  std::int64_t period_ns_;
+  SafetyFilter safety_;
+  std::unique_ptr<ArmTorques> torques_;
+  std::unique_ptr<HandObserver> observer_;
+  Registration registration_;
+  MasterState state_;
+  std::vector<std::string> channels_;
+  std::vector<TickRecord> kept_;  // a ring
+  RunSummary summary_;
+  LiveStatus live_;
+  std::uint64_t slots_ = 0;  // to run; 0: no end
+  bool registered_ = false, holds_ = false, fresh_ = false, failed_ = false;
+  std::uint64_t last_sequence_ = 0;
+  std::int64_t last_wake_ns_ = -1;
+  std::atomic<bool> stop_ = false, emergency_stop_ = false;
+};
+
+}  // namespace vmech

@@ -1,0 +1,141 @@
+#include "vmech/hw_interface/rendering/coupling_choice.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "vmech/base/linear_algebra/linear_algebra.h"
+#include "vmech/dynamics/rigid_body/newton_euler.h"
+#include "vmech/kinematics/loops/loops.h"
+#include "vmech/kinematics/tree/forward_kinematics.h"
+#include "vmech/kinematics/tree/jacobian.h"
+
+namespace vmech {
+namespace {
+
+constexpr double kFaithful = 100;  // w_v [1/s]: 3 Hz over it, squared, is 3.6 %
+constexpr double kMargin = 1.2;    // where the device bears it
+constexpr double kPhase = 0.7;     // w_d times the loop's delay [rad]
+constexpr double kDampingRatio = 0.4;
+
+/// Basis of C v = 0 [nv, mobility].
+MatrixXd AllowedMotions(const KinematicTree& tree, TreeWorkspace<double>* ws) {
+  if (tree.loops.empty()) return MatrixXd::Identity(tree.nv, tree.nv);
+  constexpr double kRank = 1e-9;
+  LoopErrors(tree, ws);
+  LoopJacobian(tree, ws);
+  return FindNullSpace(LoopRowScale(tree).asDiagonal() * DenseLoopJacobian(tree, *ws), kRank).basis;
+}
+
+/// The handle's masses on the diagonal; without rotations for a point grasp.
+Vector6d HandleMasses(const GraspFrame& grasp, const DeviceInfo& device) {
+  const double turning = grasp.kind == GraspKind::kRigid ? device.angular.mass : 0;
+  Vector6d D;
+  D << Vector3d::Constant(device.linear.mass), Vector3d::Constant(turning);
+  return D;
+}
+
+HandCoupling SoftCoupling(const DeviceInfo& device) {
+  constexpr double kSoft = 250, kOffForce = 1000;  // [N/m]; where there is no force to be felt
+  constexpr double kLever2 = 0.05 * 0.05;          // [m^2], of a hand
+  const bool has_force = device.takes_wrench || device.takes_torque;
+  const double stiffness = has_force ? kSoft : kOffForce;
+  const double damping = 4 * device.period * stiffness;
+  HandCoupling coupling;
+  coupling.stiffness << Vector3d::Constant(stiffness), Vector3d::Constant(kLever2 * stiffness);
+  coupling.damping << Vector3d::Constant(damping), Vector3d::Constant(kLever2 * damping);
+  return coupling;
+}
+
+/// Force on a hand that stays where the mechanism is, once that hangs still on a soft spring.
+double WeightAtHand(const KinematicTree& tree, const GraspFrame& grasp, const VectorXd& q,
+                    const HandCoupling& coupling) {
+  constexpr double kStep = 1e-2;
+  constexpr int kSteps = 500;
+  CoupledDynamics dynamics(tree, grasp, coupling, kStep, q);
+  const Posed X_WH = dynamics.X_WG();
+  for (int i = 0; i < kSteps; ++i) {
+    if (dynamics.Step(X_WH, Vector6d::Zero()) == CoupledStatus::kFailed) break;
+  }
+  return dynamics.w().head<3>().norm();
+}
+
+double OrInfinite(double peak) {
+  return peak > 0 ? peak : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+SafetyOptions CouplingChoice::Safety() const {
+  SafetyOptions safety;
+  if (inertia_ratio == 0) return safety;
+  safety.carried_start = true;
+  safety.passivity.grace = 0.02;
+  safety.passivity.forgiven = 0.1;
+  safety.force_slew = 5e4;
+  safety.moment_slew = 2500;
+  return safety;
+}
+
+CouplingChoice ChooseCoupling(const KinematicTree& tree, const GraspFrame& grasp, const VectorXd& q,
+                              const DeviceInfo& device, double smoothing) {
+  CouplingChoice choice;
+  choice.inertia_ratio = InertiaRatio(tree, grasp, q, device);
+  if (choice.inertia_ratio == 0) {
+    choice.coupling = SoftCoupling(device);
+    return choice;
+  }
+  const double fastest = kPhase / (0.5 * device.period + device.delay + smoothing);
+  const double wanted = kFaithful * std::sqrt(choice.inertia_ratio);
+  const double rate = std::min(kMargin * wanted, fastest);
+  const Vector6d D = HandleMasses(grasp, device);
+  choice.coupling.stiffness = rate * rate * D;
+  choice.coupling.damping = 2 * kDampingRatio * rate * D;
+  choice.coupling.max_force = OrInfinite(device.linear.peak);
+  choice.coupling.max_moment = OrInfinite(device.angular.peak);
+  choice.scale = std::min(1.0, std::pow(rate / wanted, 2));
+  HandCoupling unlimited = choice.coupling;
+  unlimited.max_force = unlimited.max_moment = OrInfinite(0);
+  choice.weight = WeightAtHand(tree, grasp, q, unlimited);
+  const double bearable = 0.5 * choice.coupling.max_force;
+  if (choice.scale * choice.weight > bearable) choice.scale = bearable / choice.weight;
+  return choice;
+}
+
+double InertiaRatio(const KinematicTree& tree, const GraspFrame& grasp, const VectorXd& q,
+                    const DeviceInfo& device) {
+  TreeWorkspace<double> ws(tree);
+  ForwardKinematics(tree, q.data(), &ws);
+  const MatrixXd N = AllowedMotions(tree, &ws);
+  if (N.cols() == 0) {
+    throw std::invalid_argument(
+        fmt::format("'{}' has no freedom at this pose: there is nothing that a hand could move",
+                    tree.mechanism.name));
+  }
+  if (device.linear.mass == 0) return 0;
+  Matrix6Xd J(6, tree.nv);
+  PointJacobian(tree, ws, grasp.node, PoseInWorld(ws, grasp.node, grasp.X_BG).p, &J);
+  // The handle's masses move the mechanism by D^1/2 J N (N'MN)^-1 N'J' D^1/2: eigenvalues 1/lambda.
+  const MatrixXd JN = HandleMasses(grasp, device).cwiseSqrt().asDiagonal() * J * N;
+  MatrixXd M = N.transpose() * MassMatrix(tree, q) * N;
+  M.diagonal().array() += 1e-12 * M.diagonal().maxCoeff();
+  const MatrixXd mobility = JN * M.llt().solve(JN.transpose());
+  const VectorXd eigen = Eigen::SelfAdjointEigenSolver<MatrixXd>(mobility).eigenvalues();
+  constexpr double kMoves = 1e-6;  // of the largest: less is a direction that the joints bar
+  double least = eigen.maxCoeff();
+  for (double value : eigen) {
+    if (value > kMoves * eigen.maxCoeff()) least = std::min(least, value);
+  }
+  return least > 0 ? 1 / least : 0;
+}
+
+double StableInertiaShare(const KinematicTree& tree, const GraspFrame& grasp, const VectorXd& q,
+                          const DeviceInfo& device) {
+  const double ratio = InertiaRatio(tree, grasp, q, device);
+  return ratio > 0 ? std::min(1.0, 0.4 / ratio) : 1;
+}
+
+}  // namespace vmech

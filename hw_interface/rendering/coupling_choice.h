@@ -1,0 +1,46 @@
+#pragma once
+
+#include "vmech/dynamics/in_hand/coupled_dynamics.h"
+#include "vmech/hw_interface/safety/safety_filter.h"
+
+namespace vmech {
+
+/// What a device that holds a mechanism can render of it.
+struct CouplingChoice {
+  HandCoupling coupling;     ///< at the hand
+  double scale = 1;          ///< force at the hand over force at the mechanism, at most 1
+  double inertia_ratio = 0;  ///< lambda: largest inertia of the mechanism over the handle's own
+  double weight = 0;         ///< force of the mechanism on a hand that keeps it here [N]
+
+  /// Safety for a stiff coupling behind encoders of 16 bits: their steps are forgiven as energy,
+  /// and the force may change as fast as the coupling's.
+  SafetyOptions Safety() const;
+};
+
+/// Spring and damper between a mechanism at the closed pose q and the hand at a device, such that
+/// inertia is felt within 5 % below 3 Hz and the device stays stable with nobody holding it. A mass
+/// m_v on a spring of stiffness K is felt as m_v / (1 - w^2 m_v/K), which asks for w_v =
+/// (K/m_v)^1/2 of 100/s; a handle of mass m behind a hold of T/2, a delay t_d and a velocity filter
+/// of time constant t_f bears w_d = (K/m)^1/2 of 0.7 / (T/2 + t_d + t_f). So
+///
+///   K = D w^2,  B = 2 z D w,  w = min(1.2 w_v lambda^1/2, w_d),  z = 0.4,  D the handle's masses,
+///
+/// lambda the largest of N' M N s = lambda (J N)' D J N s, N the free motions. Where lambda asks
+/// for more than w_d, or the weight for more than half of the device's peak force, forces are
+/// scaled down. A device that states no masses gets a soft spring, watched by the passivity
+/// controller. @throws std::invalid_argument if the mechanism has no freedom at q.
+CouplingChoice ChooseCoupling(const KinematicTree& tree, const GraspFrame& grasp, const VectorXd& q,
+                              const DeviceInfo& device, double smoothing);
+
+/// lambda above. 0 for a device that states no masses.
+double InertiaRatio(const KinematicTree& tree, const GraspFrame& grasp, const VectorXd& q,
+                    const DeviceInfo& device);
+
+/// The share of a mechanism's inertia that a device can render from measured accelerations, as the
+/// paper does, in (0, 1]: min(1, 0.4 / lambda). Delay in the acceleration turns rendered inertia
+/// against the device's own; at equality it swings up (RenderingBounds::stable_inertia). 1 for a
+/// device that states no masses.
+double StableInertiaShare(const KinematicTree& tree, const GraspFrame& grasp, const VectorXd& q,
+                          const DeviceInfo& device);
+
+}  // namespace vmech

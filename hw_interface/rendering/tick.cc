@@ -1,0 +1,25 @@
+#include "vmech/hw_interface/rendering/tick.h"
+
+#include "vmech/base/screw_algebra.h"
+
+namespace vmech {
+
+Posed Registration::HandInWorld(const Posed& X_DH) const noexcept {
+  const Axes X_WK = AxesOf(X_WD) * AxesOf(X_DH);
+  return PoseOf(Turned(X_WK, R_HK, X_WK.p));
+}
+
+void Registration::TakeHandInWorld(const MovingFrame& handle, MovingFrame* hand) const noexcept {
+  const Axes D = AxesOf(X_WD), X_WK = D * handle.X;
+  hand->X = Turned(X_WK, R_HK, X_WK.p);
+  hand->V = {Turned(D, handle.V.linear), Turned(D, handle.V.angular)};
+}
+
+Registration GraspedAt(const Matrix3d& R_WD, const Posed& X_DH, const Posed& X_WG) noexcept {
+  Registration registration;
+  registration.X_WD = {R_WD, X_WG.p - R_WD * X_DH.p};
+  registration.R_HK = (R_WD * X_DH.R).transpose() * X_WG.R;
+  return registration;
+}
+
+}  // namespace vmech

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "vmech/base/screw.h"
+#include "vmech/hw_interface/loop/recording.h"
+
+namespace vmech {
+
+/// How the master's handle is laid over the mechanism's world W: D is placed by X_WD, and the
+/// hand's frame is the handle turned by R_HK, so that it can coincide with a grasp frame of any
+/// orientation.
+///
+///   X_WK = X_WD X_DH R_HK,   F_Ho_D = R_WD' F_Ko_W   (Ko = Ho)
+struct Registration {
+  Posed X_WD;
+  Matrix3d R_HK = Matrix3d::Identity();
+
+  Posed HandInWorld(const Posed& X_DH) const noexcept;
+  /// The hand, of a handle that moves in D.
+  void TakeHandInWorld(const MovingFrame& handle, MovingFrame* hand) const noexcept;
+};
+
+/// The registration that puts the hand where the grasp frame is, with the device's axes along R_WD:
+/// a grasp without a jump.
+Registration GraspedAt(const Matrix3d& R_WD, const Posed& X_DH, const Posed& X_WG) noexcept;
+
+struct TickInput {
+  Posed X_WH;          ///< the hand, as measured; not set where an observer knows it
+  bool fresh = false;  ///< false: no new sample, the pose is that of the last tick
+  double elapsed = 0;  ///< since the last fresh sample; a whole number of periods [s]
+  bool held = true;    ///< false: the hand has let go, nothing is felt
+  const MasterState* state = nullptr;
+  /// The hand in a fresh sample as an observer knows it (HandObserver); null: nobody observes it.
+  /// For ticks that take it (UsesObservedHand) alone.
+  const MovingFrame* observed = nullptr;
+};
+
+enum class TickStatus : std::uint8_t {
+  kOk,
+  kHeld,    ///< no pose was found for this hand; the last good one stays, and the wrench is sound
+  kFailed,  ///< no sound wrench: the loop stops
+};
+
+struct TickOutput {
+  TickStatus status = TickStatus::kOk;
+  Vector6d F_Ho_W = Vector6d::Zero();  ///< what the hand is to feel, about Ho, axes of W
+  double stored_energy = 0;            ///< of the virtual mechanism, see passivity.h [J]
+};
+
+/// The virtual side: from the hand to what it feels, once per sample. Implementations allocate in
+/// their constructors only.
+class Tick {
+ public:
+  virtual ~Tick() = default;
+  /// Names of what Step writes into `channels`, at most kMaxChannels.
+  virtual std::vector<std::string> ChannelNames() const = 0;
+  /// Where the hand takes hold: the grasp frame now.
+  virtual Posed GraspFrame() const noexcept = 0;
+  /// The hand closes at X_WH: takes hold of what is nearest there, without a jump. False: that is
+  /// not possible, the hand has to be brought to the grasp frame.
+  virtual bool GraspAt(const Posed& X_WH) noexcept {
+    (void)X_WH;
+    return false;
+  }
+  /// Forgets velocities: the hand takes hold anew.
+  virtual void Reset() noexcept = 0;
+  /// Does it go by TickInput::observed where there is one?
+  virtual bool UsesObservedHand() const noexcept { return false; }
+  /// `channels` has as many entries as there are names.
+  [[nodiscard]] virtual TickOutput Step(const TickInput& input,
+                                        std::span<double> channels) noexcept = 0;
+  /// What became of the mechanism, in lines; nothing by default.
+  virtual std::string FullReport() const { return {}; }
+};
+
+}  // namespace vmech

@@ -1,0 +1,147 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <limits>
+#include <string>
+#include <string_view>
+
+#include "vmech/kinematics/inverse/inverse_kinematics.h"
+#include "vmech/solvers/augmented_lagrangian.h"
+
+namespace vmech {
+
+/// What became of one target.
+enum class TrackStatus {
+  kNotRun,
+  kFollowed,    ///< the pose nearest to the hand, on the branch
+  kCatchingUp,  ///< closed and on the branch, but the step bound or the iterations were spent
+  kDeadCentre,  ///< the nearest pose is a dead centre: close beside it, on its side
+  kJump,        ///< held: the solver arrived on another branch
+  kLost,        ///< held: the loops did not close, or values are not finite
+};
+
+std::string_view NameOf(TrackStatus status);
+
+struct TrackOptions {
+  InverseKinematicsOptions kinematics;
+  /// lambda of paper eq. (8) against the dimensionless hand error [-], 1..1e4. The multiplier
+  /// update makes the result independent of it; from 1e3 on, rounding begins to count.
+  double weight = 5e1;
+  /// Most steps for one target, 1..20. More follow a faster hand, one that pulls hard, and one
+  /// near a dead centre, where each step only halves what is left.
+  int steps = 10;
+  /// Iterations with line search for targets that those steps do not reach, 0..100. They are
+  /// needed where the hand is off the mechanism's path by more than its radius of curvature.
+  int rescue_iterations = 12;
+  /// Farthest that any coordinate moves for one target [rad or m], in [1e-6, 1]. Lower it for poses
+  /// that follow each other densely; a hand that moves faster is caught up with later.
+  double max_move = 0.3;
+  /// How well loops have to close [-], in [1e-14, 1e-3]; lengths in characteristic lengths.
+  double closure_tolerance = 1e-11;
+  /// Steps shorter than this have arrived [rad or m], in [1e-14, 1e-3].
+  double step_tolerance = 1e-6;
+
+  void Validate() const;
+};
+
+struct TrackSummary {
+  long targets = 0;
+  long followed = 0;
+  long catching_up = 0;
+  long dead_centre = 0;  ///< targets at which the pose was held, by reason
+  long jumps = 0;
+  long lost = 0;
+  long rescued = 0;          ///< needed the line search
+  double worst_closure = 0;  ///< largest |c_i| of all poses returned
+
+  long held() const { return dead_centre + jumps + lost; }
+  std::string BriefReport() const;  ///< one line
+};
+
+/// Follows a hand with a mechanism, target after target, on one branch: the fast path. Each
+/// target takes a few steps of the penalty method with multiplier update (augmented_lagrangian.h)
+/// from the pose and the multipliers of the last.
+///
+/// Branch: with A = [J; C] of hand error and loops, det(A'A_ref) is, but for a positive
+/// factor, the product of the determinants of the reduced Jacobian J N (N the free motions) here
+/// and at a good pose shortly before. It keeps its sign while poses follow each other on one
+/// branch, and vanishes at a dead centre: where the hand cannot move the mechanism, or the loops do
+/// not determine it. Beyond a dead centre that folds the hand's poses, each of them is reached from
+/// both sides: the one on this side is taken, and without one the last good pose is held. At a dead
+/// centre the mechanism stands 2 mrad beside it, on its side, until the hand comes back. So a
+/// parallelogram that is stretched out stays so: both ways on are as good. A singular pose that
+/// folds nothing (the outer axes of a wrist in line) is passed straight through. Motions that
+/// neither hand nor loops see at any pose (unseen_motions.h: a rod that spins, an elbow that
+/// circles) have no part in the determinant, and are left at rest but for rounding.
+class HandTracker {
+ public:
+  /// Keeps a reference to the tree. q is a closed pose (Assemble).
+  /// @throws std::invalid_argument as TrackOptions::Validate and InverseKinematics, or if q is
+  ///         not closed.
+  HandTracker(const KinematicTree& tree, const GraspFrame& grasp, const VectorXd& q,
+              const TrackOptions& options = {});
+
+  /// One target: bounded work, no allocation.
+  [[nodiscard]] TrackStatus Advance(const Posed& X_WH) noexcept;
+
+  const VectorXd& q() const { return q_; }  ///< the last good pose
+  /// Of q(), as Summary::multipliers; InverseKinematics::LoopMultipliers makes wrenches of them.
+  const VectorXd& multipliers() const { return workspace_.multipliers; }
+  InverseKinematics& kinematics() { return problem_; }
+  const TrackSummary& summary() const { return summary_; }
+
+ private:
+  /// Moves the shortest way to c = 0: no residual, J = 1.
+  class Closing final : public ConstrainedLeastSquares {
+   public:
+    explicit Closing(InverseKinematics& problem);
+    void Evaluate(const VectorXd& q, VectorXd* r, MatrixXd* J, VectorXd* c, MatrixXd* C) override;
+    void Plus(const VectorXd& q, const VectorXd& dq, VectorXd* q_plus) const override;
+
+   private:
+    InverseKinematics& problem_;
+  };
+
+  enum class Progress { kNone, kSome, kArrived };
+  enum class Beyond { kUnknown, kTurningBack, kPassable };  ///< what a singular pose was
+
+  Progress TakeSteps() noexcept;
+  bool TakeStep(bool with_curvature) noexcept;
+  Progress Rescue() noexcept;
+  TrackStatus Judge() noexcept;
+  bool IsClosed() const noexcept;
+  void Close() noexcept;
+  void StackJacobians() noexcept;
+  double BranchDeterminant() noexcept;
+  void AddUnseen(const MatrixXd& N) noexcept;
+  void FindLeastStiffDirection() noexcept;
+  bool TryBeside(double size) noexcept;
+  bool OffsetFromSingularity() noexcept;
+  Beyond FindMirrorImage() noexcept;
+  bool WithinLimits() const noexcept;
+  TrackStatus Accept(Progress progress) noexcept;
+  TrackStatus Hold(TrackStatus why) noexcept;
+  void MoveToTrial() noexcept;
+  void SetReference() noexcept;
+
+  InverseKinematics problem_;
+  Closing closing_;
+  AugmentedLagrangianOptions rescue_options_, closing_options_;
+  AugmentedLagrangianWorkspace workspace_, closing_workspace_;
+  TrackOptions options_;
+  VectorXd q_, trial_, good_multipliers_;
+  Linearization at_trial_;
+  MatrixXd A_, product_;  // [J; C] at trial_; A'A_ref
+  VectorXd q_reference_;  // an earlier good pose, at a distance from dead centres
+  MatrixXd A_reference_;
+  MatrixXd unseen_, unseen_reference_;  // N, orthonormal, at trial_ and at the reference
+  double unseen_weight_ = 0;            // of N N' beside A'A
+  double log_reference_ = 0;            // log det(A_ref'A_ref)
+  double log_best_ = -std::numeric_limits<double>::infinity();  // the largest so far
+  double determinant_ = 1;                                      // BranchDeterminant() at trial_
+  Eigen::LDLT<MatrixXd> normal_;
+  VectorXd step_, dq_, origin_;  // a soft motion, and where it starts
+  TrackSummary summary_;
+};
+
+}  // namespace vmech

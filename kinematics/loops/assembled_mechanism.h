@@ -1,0 +1,58 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "vmech/kinematics/loops/assembly.h"
+#include "vmech/kinematics/loops/axis_misfit.h"
+#include "vmech/kinematics/loops/reconcile.h"
+#include "vmech/mechanisms/mechanism.h"
+
+namespace vmech {
+
+/// A coordinate that the assembly moved from where the mechanism states it.
+struct MovedStart {
+  int joint = -1;
+  int freedom = 0;
+  double from = 0, to = 0;  ///< [m] or [rad]
+};
+
+/// A mechanism with its loops closed, from which every computation begins.
+struct AssembledMechanism {
+  /// The start values of all its joints, whatever will be cut, are those of the assembled pose;
+  /// anchors are moved where the rounding of their figures kept loops from closing.
+  Mechanism mechanism;
+  AssemblySummary summary;  ///< closed, or why not
+  double correction = 0;    ///< as Reconciliation::correction; 0 if no anchor was moved
+  /// To which its loops close in all poses; between those of Reconcile's walk some rounding is
+  /// left.
+  double closure_tolerance = AssemblyOptions().tolerance;
+  std::vector<AxisMisfit> misfits;       ///< what was moved, in words of the drawing
+  std::vector<MovedStart> moved_starts;  ///< of stated starts; of all after another start
+
+  /// What a user should know, a sentence each: starts that were moved, another start that had to be
+  /// found, figures that are rounded by more than 1e-9, joints that start outside their limits.
+  std::vector<std::string> Notes() const;
+};
+
+struct AssembleOptions {
+  AssemblyOptions closing;
+  std::vector<int> fixed_joints;  ///< whose start values stay as given
+};
+
+/// Closes the loops of a mechanism, the same for every use of it: the loops are cut where no start
+/// is stated (and then as FindSpanningTree cuts), closed as Assemble does, and where rounded
+/// figures let them close nowhere, or only at poses at which nothing moves, as Reconcile does. What
+/// is closed is decided by Mechanism::tolerance.
+/// @throws std::invalid_argument as FindSpanningTree and AssemblyOptions::Validate.
+AssembledMechanism AssembleMechanism(const Mechanism& mechanism,
+                                     const AssembleOptions& options = {});
+
+/// The same, or std::runtime_error with the joint, the gap and the remedy where loops do not close.
+AssembledMechanism RequireAssembled(const Mechanism& mechanism,
+                                    const AssembleOptions& options = {});
+
+/// Joints whose start values are outside their limits, a sentence each.
+std::vector<std::string> StartsOutsideLimits(const Mechanism& mechanism);
+
+}  // namespace vmech

@@ -1,0 +1,150 @@
+#pragma once
+
+#include "vmech/kinematics/tree/tree_workspace.h"
+
+namespace vmech {
+
+/// Loop closure, paper eq. (4)-(6), for a cut joint of any type. F and M are the anchors of the cut
+/// joint on its first and second link. With f freedoms the joint closes its loop with 6 - f
+/// equations, the directions in which M may not move in F:
+///
+///   revolute, cylindrical  p_x p_y (p_z)  r_x r_y          prismatic  p_x p_y  r_x r_y r_z
+///   screw      p_x p_y  r_x r_y  p_z - pitch r_z            planar     p_z  r_x r_y
+///   universal  p_x p_y p_z  and the rotation about y_M x x_F
+///   spherical  p_x p_y p_z                                  weld       all six
+///
+/// all in axes of F. r is the rotation that is left, 2 sin(angle/2) times its axis; where the joint
+/// turns about z, it is the turn that brings z_M back onto z_F. Unlike the paper's sine (eq. 6) it
+/// grows up to half a turn, so that a loop assembled upside down does not pass for closed.
+
+/// Needs X_WB; writes everything in LoopState but `bias`.
+template <typename T>
+void LoopErrors(const KinematicTree& tree, TreeWorkspace<T>* ws);
+
+/// The same of one loop, from where M is in F; writes R_FM, n_F and e2.
+template <typename T>
+void LoopError(const Loop& loop, const Matrix3<T>& R_FM, const Vector3<T>& p_FM,
+               LoopState<T>* state);
+
+/// C = -d e2 / dv at a closed loop (paper eq. 4: e2 = C dq). Needs LoopErrors; writes loop_columns.
+template <typename T>
+void LoopJacobian(const KinematicTree& tree, TreeWorkspace<T>* ws);
+
+/// The part of the relative acceleration of the anchors that is there when v' = 0, so that a closed
+/// loop obeys C v' + bias = 0. Needs w, v and accelerations of ForwardAccelerations(vdot = nullptr)
+/// and LoopErrors; writes LoopState::bias.
+template <typename T>
+void LoopAccelerationBias(const KinematicTree& tree, TreeWorkspace<T>* ws);
+
+/// T' [v; w]: the equations' share of a twist of M in F, in axes of F. What is behind the last of
+/// the loop's rows is zero. The same rows take a wrench on M to what it does to the multipliers.
+template <typename T>
+Vector6<T> ProjectOnRows(const Loop& loop, const LoopState<T>& state, const Vector3<T>& linear,
+                         const Vector3<T>& angular);
+
+/// T mu: the wrench on the second link about M, in axes of F, of multipliers mu [rows] on the
+/// equations.
+template <typename T>
+Wrench<T> WrenchOfMultipliers(const Loop& loop, const LoopState<T>& state, const T* mu);
+
+/// Coordinates of a cut joint that has turned and shifted freely, from the poses of its anchors
+/// [FreedomsOf(type)]; for a spherical joint the rotation vector. Angles within +-pi.
+template <typename T>
+Vector3<T> CutJointCoordinates(const Loop& loop, const LoopState<T>& state);
+
+/// Unit twists [v; w] of M in F of the freedoms of a cut joint, axes of F.
+template <typename T>
+struct CutJointFreedoms {
+  int count = 0;
+  Vector6<T> twist_F[3];
+};
+template <typename T>
+CutJointFreedoms<T> FreedomsOfCutJoint(const Loop& loop, const LoopState<T>& state);
+
+/// Rates of the coordinates of a cut joint [FreedomsOf(type)]; for a spherical joint the angular
+/// velocity of M in F, axes of M. Needs w, v and LoopErrors.
+template <typename T>
+Vector3<T> CutJointRates(const KinematicTree& tree, const TreeWorkspace<T>& ws, int loop);
+
+/// Is equation `row` of a loop one of lengths (in metres)?
+inline bool IsLengthRow(JointType type, int row);
+
+/// Largest loop error, lengths divided by the characteristic length. A loop assembled half a turn
+/// the wrong way counts with its full error. Needs LoopErrors.
+template <typename T>
+T LargestLoopError(const KinematicTree& tree, const TreeWorkspace<T>& ws);
+
+/// Dense C [rows, nv] for the analyses that need it whole. Needs LoopJacobian.
+MatrixXd DenseLoopJacobian(const KinematicTree& tree, const TreeWorkspace<double>& ws);
+/// All e2, stacked [rows]; lengths in metres, rotations in radians.
+VectorXd StackedLoopErrors(const KinematicTree& tree, const TreeWorkspace<double>& ws);
+/// 1/length for rows that are lengths, 1 for rotations [rows]: makes C dimensionless.
+VectorXd LoopRowScale(const KinematicTree& tree);
+
+// Small and everywhere: inline.
+
+bool IsLengthRow(JointType type, int row) {
+  switch (type) {
+    case JointType::kPrismatic:
+    case JointType::kCylindrical:
+      return row < 2;
+    case JointType::kScrew:
+      return row < 2 || row == 4;
+    case JointType::kPlanar:
+      return row < 1;
+    default:
+      return row < 3;
+  }
+}
+
+template <typename T>
+Vector6<T> ProjectOnRows(const Loop& loop, const LoopState<T>& state, const Vector3<T>& linear,
+                         const Vector3<T>& angular) {
+  const T zero(0);
+  const Vector3<T>&l = linear, &a = angular;
+  switch (loop.type) {
+    case JointType::kRevolute:
+      return {l[0], l[1], l[2], a[0], a[1], zero};
+    case JointType::kPrismatic:
+      return {l[0], l[1], a[0], a[1], a[2], zero};
+    case JointType::kCylindrical:
+      return {l[0], l[1], a[0], a[1], zero, zero};
+    case JointType::kScrew:
+      return {l[0], l[1], a[0], a[1], l[2] - loop.pitch * a[2], zero};
+    case JointType::kUniversal:
+      return {l[0], l[1], l[2], state.n_F.dot(a), zero, zero};
+    case JointType::kSpherical:
+      return {l[0], l[1], l[2], zero, zero, zero};
+    case JointType::kPlanar:
+      return {l[2], a[0], a[1], zero, zero, zero};
+    case JointType::kWeld:
+      break;
+  }
+  return Stacked<T>(l, a);
+}
+
+template <typename T>
+Wrench<T> WrenchOfMultipliers(const Loop& loop, const LoopState<T>& state, const T* mu) {
+  const T zero(0);
+  switch (loop.type) {
+    case JointType::kRevolute:
+      return {{mu[0], mu[1], mu[2]}, {mu[3], mu[4], zero}};
+    case JointType::kPrismatic:
+      return {{mu[0], mu[1], zero}, {mu[2], mu[3], mu[4]}};
+    case JointType::kCylindrical:
+      return {{mu[0], mu[1], zero}, {mu[2], mu[3], zero}};
+    case JointType::kScrew:
+      return {{mu[0], mu[1], mu[4]}, {mu[2], mu[3], -loop.pitch * mu[4]}};
+    case JointType::kUniversal:
+      return {{mu[0], mu[1], mu[2]}, state.n_F * mu[3]};
+    case JointType::kSpherical:
+      return {{mu[0], mu[1], mu[2]}, {zero, zero, zero}};
+    case JointType::kPlanar:
+      return {{zero, zero, mu[0]}, {mu[1], mu[2], zero}};
+    case JointType::kWeld:
+      return {{mu[0], mu[1], mu[2]}, {mu[3], mu[4], mu[5]}};
+  }
+  return {};
+}
+
+}  // namespace vmech

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <vector>
+
+#include "vmech/base/pose.h"
+#include "vmech/kinematics/motion/table_roughness.h"
+
+namespace vmech {
+
+/// Position, velocity and acceleration of a coordinate at one time.
+struct MotionSample {
+  double position = 0;
+  double velocity = 0;
+  double acceleration = 0;
+};
+
+/// How a driven coordinate moves in time: at constant acceleration, or through a table by the cubic
+/// spline with not-a-knot ends (twice continuously differentiable; a table of one row stands still,
+/// of two moves at constant speed, of three on a parabola). Where the table dwells (FindDwells) the
+/// coordinate stands exactly still from the first of the equal rows to the last, these included;
+/// the splines before and behind end there with velocity zero, so that only the acceleration jumps.
+/// SI units and radians.
+class MotionLaw {
+ public:
+  /// position = start + speed t + acceleration t^2 / 2.
+  /// @throws std::invalid_argument if one is not finite.
+  static MotionLaw Uniform(double start, double speed, double acceleration = 0);
+  /// @throws std::invalid_argument if the lengths differ, the table is empty, a value is not finite
+  ///         or the times do not increase; the message names the row (counted from 1).
+  static MotionLaw Table(const std::vector<double>& times, const std::vector<double>& values);
+
+  /// One that was not given, as MotionLaw() is: it has no position.
+  bool empty() const { return pieces_.empty(); }
+  /// Precondition: not empty.
+  MotionSample At(double t) const;
+  /// Of the table; zero for a uniform motion.
+  const TableRoughness& roughness() const { return roughness_; }
+
+ private:
+  friend class HandLaw;
+  static MotionLaw TableWithDwells(const std::vector<double>& times,
+                                   const std::vector<double>& values,
+                                   const std::vector<bool>& dwells);
+  void AddSpline(const std::vector<double>& times, const std::vector<double>& values,
+                 bool rests_before, bool rests_after);
+
+  struct Piece {
+    double from;  ///< the first time that it holds for; just behind t0 where a dwell ends
+    double t0;
+    double c[4];  ///< position = sum c_k (t - t0)^k
+  };
+  std::vector<Piece> pieces_;
+  TableRoughness roughness_;
+};
+
+/// Pose, velocity and acceleration of a hand-held frame in the world.
+struct HandSample {
+  Posed X_WH;
+  Vector6d V_WH;  ///< [v; w]
+  Vector6d A_WH;  ///< [a; alpha]
+};
+
+/// How the hand moves: a cubic spline through positions, and one through the rotation vectors
+/// between consecutive orientations, accumulated in the frame of the first (smooth, and exact at
+/// the rows; meant for tables whose total turn stays below pi of the first row's orientation).
+/// Position and orientation dwell each for themselves, as MotionLaw does.
+class HandLaw {
+ public:
+  /// @throws std::invalid_argument as MotionLaw::Table, or for an orientation that is pi or more
+  ///         away from the first.
+  static HandLaw Table(const std::vector<double>& times, const std::vector<Posed>& poses);
+
+  /// One that was not given, as HandLaw() is: it has no pose.
+  bool empty() const { return position_.empty(); }
+  /// Precondition: not empty.
+  HandSample At(double t) const;
+  /// Of its positions [m/s^2] and of its rotation vectors [rad/s^2].
+  TableRoughness position_roughness() const { return Together(position_); }
+  TableRoughness rotation_roughness() const { return Together(rotation_vector_); }
+
+ private:
+  /// Root of the sum of squares over three axes.
+  static TableRoughness Together(const std::vector<MotionLaw>& axes);
+
+  Matrix3d R_W0_ = Matrix3d::Identity();
+  std::vector<MotionLaw> position_;
+  std::vector<MotionLaw> rotation_vector_;
+};
+
+}  // namespace vmech

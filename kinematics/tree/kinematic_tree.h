@@ -1,0 +1,111 @@
+#pragma once
+
+#include <vector>
+
+#include "vmech/mechanisms/graph.h"
+#include "vmech/mechanisms/mechanism.h"
+
+namespace vmech {
+
+/// A mechanism prepared for computation: the spanning tree as a list of nodes, each carried by one
+/// elementary joint, and the loops that the cut joints close. Immutable.
+///
+/// A joint with several freedoms becomes a chain of elementary joints with massless nodes between
+/// them (universal = two revolutes, planar = two prismatics and a revolute, ...); only the
+/// spherical joint stays whole. Elementary joints move about or along the z axis of their node.
+///
+/// Coordinates q [nq] and velocities v [nv] are those of the tree joints, in node order; they
+/// differ for the spherical joint alone: four in q (unit quaternion w, x, y, z of R_FM), three in v
+/// (angular velocity of M in F, in the axes of M).
+
+enum class NodeMotion { kFixed, kRevolute, kPrismatic, kScrew, kSpherical };
+
+/// Entries in v.
+inline int VelocitiesOf(NodeMotion motion) {
+  return motion == NodeMotion::kFixed ? 0 : motion == NodeMotion::kSpherical ? 3 : 1;
+}
+
+struct TreeNode {
+  int parent = -1;  ///< index of a node before this one; -1 is the ground
+  NodeMotion motion = NodeMotion::kFixed;
+  int joint = -1;         ///< the mechanism's joint that this elementary joint is (part of)
+  bool reversed = false;  ///< the node belongs to the joint's first link
+  int q = -1;             ///< first index in q
+  int v = -1;             ///< first index in v
+  int freedom = 0;        ///< which freedom of the joint this is
+  double pitch = 0;       ///< kScrew [m/rad]
+  Posed X_PF;             ///< where the node is in its parent when its coordinate is zero
+
+  int link = -1;  ///< the link that moves with this node; -1 for a node between freedoms
+  Posed X_BL;     ///< the link's drawing frame in the node
+  double mass = 0;
+  Vector3d p_BoBcm = Vector3d::Zero();
+  Matrix3d I_Bcm = Matrix3d::Zero();  ///< about the centre of gravity, node axes
+};
+
+/// Where the two anchors of a joint are carried: F with the first link, M with the second.
+struct JointPlacement {
+  int first_node = -1;  ///< -1 is the ground
+  int second_node = -1;
+  Posed X_AF;          ///< F in first_node
+  Posed X_BM;          ///< M in second_node
+  int tree_node = -1;  ///< the last node of the joint's chain; -1 if the joint is cut
+};
+
+/// A velocity that opens or closes a loop.
+struct LoopColumn {
+  int node;
+  int v;        ///< index in v
+  int axis;     ///< 0..2 for a spherical joint, else 0
+  double sign;  ///< +1 if it moves the second anchor of the cut joint, -1 if the first
+};
+
+/// A node that lies on one side of a loop only.
+struct LoopNode {
+  int node;
+  double sign;  ///< as LoopColumn::sign
+};
+
+/// A loop, closed by a cut joint with 6 - f equations.
+struct Loop {
+  int joint = -1;
+  JointType type = JointType::kRevolute;
+  double pitch = 0;
+  int row = 0;   ///< first equation of this loop
+  int rows = 0;  ///< 6 - f
+  std::vector<LoopColumn> columns;
+  std::vector<LoopNode> path;  ///< nodes around the loop, those without a freedom included
+};
+
+struct KinematicTree {
+  Mechanism mechanism;
+  SpanningTree spanning;
+  std::vector<TreeNode> nodes;
+  std::vector<JointPlacement> placements;  ///< one per joint of the mechanism
+  std::vector<Loop> loops;
+  int nq = 0;
+  int nv = 0;
+  int rows = 0;              ///< loop equations in all
+  std::vector<int> turning;  ///< the coordinates that are angles: no lengths, no quaternions
+  double length = 1;         ///< characteristic length [m]
+
+  /// Node that carries a link; -1 for the ground.
+  int NodeOfLink(int link) const { return node_of_link[link]; }
+  std::vector<int> node_of_link;
+  Posed X_node_link(int link) const;  ///< the link's drawing frame in its node
+};
+
+/// @throws std::invalid_argument as FindSpanningTree.
+KinematicTree BuildKinematicTree(Mechanism mechanism, const SpanningTreeOptions& options = {});
+
+/// The mechanism's start values in the coordinates of the tree. Cut joints have no part in it.
+VectorXd StartCoordinates(const KinematicTree& tree);
+
+/// One velocity of the tree as text: "pin", or "ball.ry" for a freedom of a joint with several.
+std::string NameOfVelocity(const KinematicTree& tree, int v);
+/// Index in v of the given freedom of a tree joint; -1 if the joint is cut.
+int VelocityIndex(const KinematicTree& tree, int joint, int freedom);
+/// Index in q of the given freedom of a tree joint that is not spherical; -1 if the joint is cut.
+int CoordinateIndex(const KinematicTree& tree, int joint, int freedom);
+
+}  // namespace vmech

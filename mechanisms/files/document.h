@@ -1,0 +1,128 @@
+#pragma once
+
+#include <filesystem>
+#include <initializer_list>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "vmech/base/pose.h"
+#include "vmech/mechanisms/files/document_item.h"
+#include "vmech/mechanisms/files/file_errors.h"
+
+namespace vmech {
+
+/// The layer under every file that vmech reads: YAML as people write it, JSON as programs write it
+/// (which is YAML too), as a tree of nodes that know where they stand. A reader takes typed values
+/// out of it; whatever is wrong is collected, and thrown in one go by `Document::ThrowErrors`.
+
+constexpr double kMaxNumber = 1e30;  ///< magnitude of a number in a file; beyond it is a slip
+
+/// A decimal number as in JSON or YAML 1.2: sign, digits, point, exponent, nothing after it. None
+/// if the text is anything else: with a leading zero (some readers take it for octal), not finite,
+/// or beyond kMaxNumber.
+std::optional<double> ParseNumber(std::string_view text);
+
+class Document;
+
+/// A value in a document, or an absent one. Handles are cheap to copy and live as long as their
+/// document. The typed getters return the fallback if the node is absent; if it is present but not
+/// of the asked kind they report that and return the fallback.
+class Node {
+ public:
+  using Kind = NodeKind;
+
+  Node() = default;
+  explicit operator bool() const { return kind() != Kind::kAbsent; }
+  Kind kind() const;
+  /// The key under which the node stands in a map, else empty.
+  const std::string& key() const;
+  std::string path() const;
+  int line() const;
+  int column() const;
+
+  /// The document of a present node.
+  Document& document() const { return *document_; }
+
+  /// Reports what is wrong with this value, at the value or at its key.
+  void Error(std::string message) const;
+  void KeyError(std::string message) const;
+
+  /// The value under a key of a map; absent if there is none.
+  Node operator[](std::string_view key) const;
+
+  /// True if the node is a map. Reports required keys that are missing and keys that are neither
+  /// required nor optional, save those that begin with "x-", which are everybody's own.
+  bool CheckKeys(std::initializer_list<std::string_view> required,
+                 std::initializer_list<std::string_view> optional = {}) const;
+
+  /// The entries of a list or of a map with free keys, in the order of the file.
+  std::vector<Node> List() const;
+  std::vector<Node> Map() const;
+
+  /// Reports a key that cannot name a part: empty, longer than 100 bytes, with a blank at an end,
+  /// or with '/', ',', '"', '\' or a control character in it.
+  void CheckName() const;
+
+  /// True for a scalar without quotes that reads as a number.
+  bool IsNumber() const;
+  double Number(double fallback = 0) const;
+  double Positive(double fallback = 1) const;
+  double NonNegative(double fallback = 0) const;
+  int Integer(int fallback, int lowest, int highest) const;
+  bool Boolean(bool fallback) const;
+  std::string Text(std::string fallback = {}) const;
+  Vector3d Vector3(const Vector3d& fallback = Vector3d::Zero()) const;
+  /// Exactly `count` numbers; for count = 1 a bare number will do. Empty if absent or wrong.
+  std::vector<double> Numbers(int count) const;
+  /// One of a set of words.
+  template <typename Enum>
+  Enum Word(std::initializer_list<std::pair<std::string_view, Enum>> words, Enum fallback) const {
+    std::vector<std::string> names;
+    for (const auto& word : words) names.emplace_back(word.first);
+    const int index = WordIndex(names);
+    return index < 0 ? fallback : words.begin()[index].second;
+  }
+
+ private:
+  friend class Document;
+  Node(Document* document, int index) : document_(document), index_(index) {}
+  int WordIndex(std::span<const std::string> words) const;
+  bool Expect(Kind expected, std::string_view what) const;
+
+  Document* document_ = nullptr;
+  int index_ = -1;
+};
+
+class Document {
+ public:
+  /// Parses a text; `name` stands for it in messages. Not accepted: text that is not UTF-8 or has
+  /// control characters, YAML's anchors, aliases and tags, keys that are not words, duplicate keys,
+  /// more than kMaxNesting levels, more than one document. @throws FileErrors
+  Document(std::string_view text, std::string name);
+  Document(const Document&) = delete;
+  Document& operator=(const Document&) = delete;
+
+  Node root() { return {this, 0}; }
+  const std::string& name() const { return name_; }
+
+  /// Adds to what is wrong. @throws FileErrors when that becomes too much to read.
+  void Report(FileError error);
+  bool ok() const { return errors_.empty(); }
+  /// @throws FileErrors with everything reported so far, in the order of the lines; or returns.
+  void ThrowErrors();
+
+ private:
+  friend class Node;
+  void CheckDuplicateKeys();
+
+  std::string name_, text_;
+  std::vector<DocumentItem> items_;
+  std::vector<FileError> errors_;
+};
+
+}  // namespace vmech

@@ -1,0 +1,140 @@
+#include "vmech/mechanisms/files/read_link.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "vmech/mechanisms/files/read_dh.h"
+#include "vmech/mechanisms/mass_properties.h"
+
+namespace vmech {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+enum class InertiaPoint { kCenterOfGravity, kOrigin };
+enum class OffDiagonal { kMatrixElements, kProductsOfInertia };
+
+/// The axes x, y, z of a map: z is exact, x is made orthogonal to it. y is a check only.
+Matrix3d ReadAxes(const Node& map) {
+  constexpr double kSquare = 1e-2;  // [rad] how far y may be from z cross x
+  const Node z = map["z"], x = map["x"], y = map["y"];
+  if (!z && !x && !y) return Matrix3d::Identity();
+  if (!z || !x) {
+    map.Error("axes need both 'z' and 'x'");
+    return Matrix3d::Identity();
+  }
+  const Vector3d z_axis = z.Vector3(Vector3d::UnitZ()), x_axis = x.Vector3(Vector3d::UnitX());
+  if (z_axis.norm() == 0) z.Error("the z axis has no length");
+  if (x_axis.norm() == 0) x.Error("the x axis has no length");
+  if (z_axis.norm() == 0 || x_axis.norm() == 0) return Matrix3d::Identity();
+  Matrix3d R = Matrix3d::Identity();
+  try {
+    R = AxesFromZX(z_axis, x_axis);
+  } catch (const std::invalid_argument& defect) {
+    x.Error(defect.what());
+    return R;
+  }
+  if (!y) return R;
+  const Vector3d y_axis = y.Vector3(R.col(1));
+  if (y_axis.norm() == 0) {
+    y.Error("the y axis has no length");
+  } else if (y_axis.dot(R.col(1)) < 0) {
+    y.Error("the axes are left-handed; y must be z cross x, the opposite of this");
+  } else if (y_axis.normalized().cross(R.col(1)).norm() > kSquare) {
+    y.Error("y is not at right angles to z and x; leave it out, it is z cross x");
+  }
+  return R;
+}
+
+/// The inertia matrix as it is written, in the axes of the link, about the point it is written for;
+/// not finite if a moment is missing or wrong.
+Matrix3d ReadInertiaMatrix(const Node& node, const Units& units) {
+  if (const Node principal = node["principal"]) {
+    for (const char* key : {"xx", "yy", "zz", "xy", "xz", "yz", "off_diagonal"}) {
+      if (const Node extra = node[key]) extra.KeyError("not used beside 'principal'");
+    }
+    const Node axes = node["axes"];
+    if (axes) axes.CheckKeys({"z", "x"}, {"y"});
+    const Vector3d moments = units.inertia * principal.Vector3(Vector3d::Constant(kUnknown));
+    return RotatedInertia(ReadAxes(axes), moments.asDiagonal());
+  }
+  if (const Node axes = node["axes"]) axes.KeyError("used with 'principal' only");
+  for (const char* key : {"xx", "yy", "zz"}) {
+    if (!node[key]) node.KeyError(fmt::format("the key '{}' (or 'principal') is missing", key));
+  }
+  const OffDiagonal convention = node["off_diagonal"].Word<OffDiagonal>(
+      {{"matrix_elements", OffDiagonal::kMatrixElements},
+       {"products_of_inertia", OffDiagonal::kProductsOfInertia}},
+      OffDiagonal::kMatrixElements);
+  const double sign = convention == OffDiagonal::kMatrixElements ? 1 : -1;
+  const auto moment = [&](const char* key) { return node[key].Number(kUnknown); };
+  const auto off_diagonal = [&](const char* key) { return sign * node[key].Number(); };
+  return units.inertia * InertiaFromElements(moment("xx"), moment("yy"), moment("zz"),
+                                             off_diagonal("xy"), off_diagonal("xz"),
+                                             off_diagonal("yz"));
+}
+
+Matrix3d ReadInertia(const Node& node, const Units& units, double mass, const Vector3d& p_LoLcm) {
+  if (!node.CheckKeys(
+          {}, {"about", "xx", "yy", "zz", "xy", "xz", "yz", "off_diagonal", "principal", "axes"})) {
+    return Matrix3d::Zero();
+  }
+  const Matrix3d written = ReadInertiaMatrix(node, units);
+  if (!written.allFinite()) return Matrix3d::Zero();
+  const InertiaPoint about = node["about"].Word<InertiaPoint>(
+      {{"center_of_gravity", InertiaPoint::kCenterOfGravity}, {"origin", InertiaPoint::kOrigin}},
+      InertiaPoint::kCenterOfGravity);
+  const Matrix3d I_Lcm = about == InertiaPoint::kOrigin
+                             ? InertiaAboutCenterOfGravity(written, mass, p_LoLcm)
+                             : written;
+  const double scale = written.cwiseAbs().maxCoeff();
+  if (mass == 0 && scale > 0) {
+    node.KeyError("a link without mass has no inertia; give its mass");
+  } else if (std::string defect = InertiaDefect(I_Lcm, scale); !defect.empty()) {
+    node.KeyError(defect + "; check the units, 'about' and the sign of xy, xz, yz");
+  }
+  return I_Lcm;
+}
+
+MassProperties ReadMassProperties(const Node& link, const Units& units) {
+  MassProperties properties;
+  if (const Node mass = link["mass"]) properties.mass = units.mass * mass.NonNegative(1);
+  properties.p_LoLcm = units.length * link["center_of_gravity"].Vector3();
+  if (const Node inertia = link["inertia"]) {
+    properties.I_Lcm = ReadInertia(inertia, units, properties.mass, properties.p_LoLcm);
+  }
+  return properties;
+}
+
+}  // namespace
+
+Posed ReadFrame(const Node& map, const Units& units) {
+  if (const Node dh = map["dh"]) {
+    for (const char* key : {"origin", "z", "x", "y"}) {
+      if (const Node extra = map[key]) extra.KeyError("not used beside 'dh'");
+    }
+    return ReadDhRows(dh, units);
+  }
+  return {ReadAxes(map), units.length * map["origin"].Vector3()};
+}
+
+Link ReadLink(const Node& node, const Units& units) {
+  Link link;
+  link.name = node.key();
+  node.CheckName();
+  if (!node.CheckKeys({"anchors"}, {"description", "mass", "center_of_gravity", "inertia"})) {
+    return link;
+  }
+  node["description"].Text();
+  link.mass_properties = ReadMassProperties(node, units);
+  for (const Node& anchor : node["anchors"].Map()) {
+    anchor.CheckName();
+    Posed X_LA;
+    if (anchor.CheckKeys({}, {"origin", "z", "x", "y", "dh"})) X_LA = ReadFrame(anchor, units);
+    link.anchors.push_back({anchor.key(), X_LA});
+  }
+  return link;
+}
+
+}  // namespace vmech

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vmech/mechanisms/files/document.h"
+
+namespace vmech {
+
+/// A table of numbers in a text file: names of columns in the first line, values kept apart by
+/// commas below; blank lines and those that begin with # are passed over. Not accepted: rows of
+/// another length, values that are not finite numbers, a first column that does not increase.
+struct CsvTable {
+  std::string file;
+  std::vector<std::string> names;
+  int names_line = 0;
+  std::vector<std::vector<double>> columns;  ///< by name
+  std::vector<int> lines;                    ///< of each row
+
+  size_t rows() const { return lines.size(); }
+  /// A column by its name; null if there is none.
+  const std::vector<double>* Find(std::string_view name) const;
+};
+
+constexpr size_t kMaxTableBytes = size_t{256} << 20;
+
+/// A text as a cell of a CSV file, on one line and quoted where it must be. One that a spreadsheet
+/// would run as a formula - it begins with = + - @, a tab or a line break, and is no number - gets
+/// an apostrophe before it, by which spreadsheets know a text.
+std::string CsvCell(std::string_view text);
+
+/// @throws FileErrors with everything that is wrong. `name` stands for the file in messages.
+CsvTable ParseCsvTable(std::string_view text, const std::string& name);
+CsvTable ReadCsvTable(const std::filesystem::path& path);
+
+}  // namespace vmech

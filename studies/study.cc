@@ -1,0 +1,85 @@
+#include "vmech/studies/study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/open_components.h"
+#include "vmech/dynamics/loads/run_load_study.h"
+
+namespace vmech {
+namespace {
+
+/// The freedom that turns about the z axis of a joint that can carry bearings; -1 if it has none.
+int TurnAboutAxis(JointType type) {
+  switch (type) {
+    case JointType::kRevolute:
+    case JointType::kScrew:
+      return 0;
+    case JointType::kCylindrical:
+      return 1;
+    case JointType::kPlanar:
+      return 2;
+    default:
+      return -1;
+  }
+}
+
+DutyCycle CycleOfJoint(const LoadStudy& study, const LoadStudyResult& loads, int joint,
+                       int freedom) {
+  DutyCycle cycle;
+  std::vector<double> times;
+  for (const PoseLoads& pose : loads.poses) {
+    times.push_back(pose.time);
+    cycle.angle.push_back(pose.joints[joint].position[freedom]);
+    cycle.speed.push_back(pose.joints[joint].rate[freedom]);
+    cycle.wrench.push_back(pose.joints[joint]);
+  }
+  if (study.cycle > 0) {
+    // Poses share a cycle evenly; it has no first and last.
+    cycle.duration.assign(times.size(), study.cycle / static_cast<double>(times.size()));
+  } else {
+    cycle.duration = DurationsFromTimes(times);
+  }
+  return cycle;
+}
+
+/// Everything that loads a bearing but the moment about its own axis.
+LoadCertainty CertaintyOfLoads(const JointCertainty& certainty) {
+  const bool certain = std::all_of(certainty.begin(), certainty.begin() + 5,
+                                   [](Certainty c) { return c == Certainty::kCertain; });
+  return certain ? LoadCertainty::kCertain : LoadCertainty::kDependsOnRule;
+}
+
+}  // namespace
+
+StudyOutcome RunStudy(const StudyFile& file, const LoadStudyOptions& options) {
+  StudyOutcome outcome;
+  outcome.loads = RunLoadStudy(file.study, options);
+  outcome.loads.notes.insert(outcome.loads.notes.begin(), file.notes.begin(), file.notes.end());
+  outcome.warnings = outcome.loads.warnings;
+  for (const BearingRequest& request : file.bearings) {
+    const Joint& joint = file.study.mechanism.joints[request.joint];
+    const int freedom = TurnAboutAxis(joint.type);
+    if (freedom < 0) {
+      throw std::invalid_argument(fmt::format(
+          "joint '{}' is {} and does not turn about one axis; bearings can be chosen for revolute, "
+          "cylindrical, screw and planar joints",
+          joint.name, NameOf(joint.type)));
+    }
+    const DutyCycle cycle = CycleOfJoint(file.study, outcome.loads, request.joint, freedom);
+    outcome.bearings.push_back(
+        {request.joint,
+         SelectJointBearings(cycle, request.arrangement, request.requirements,
+                             CertaintyOfLoads(VerdictsThatMatter(outcome.loads, request.joint)),
+                             file.catalogue)});
+    for (const std::string& warning : outcome.bearings.back().bearings.warnings) {
+      outcome.warnings.push_back(joint.name + ": " + warning);
+    }
+  }
+  return outcome;
+}
+
+}  // namespace vmech

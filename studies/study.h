@@ -1,0 +1,50 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "vmech/dynamics/bearings/bearing.h"
+#include "vmech/dynamics/bearings/joint_bearings.h"
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/load_study.h"
+
+namespace vmech {
+
+/// The bearings that a study asks for at one joint.
+struct BearingRequest {
+  int joint = -1;
+  Arrangement arrangement;
+  BearingRequirements requirements;
+};
+
+/// A study file as read: what to compute, and what is asked of the result.
+struct StudyFile {
+  std::filesystem::path path;
+  std::string name;         ///< of the study; the file's stem if it gives none
+  std::string description;  ///< free text, may be empty
+  std::filesystem::path mechanism_path;
+  std::string motion;  ///< the motion in words: "main at 1500 rpm, 2 turns"
+  LoadStudy study;
+  std::vector<BearingRequest> bearings;
+  std::vector<Bearing> catalogue;       ///< the built-in one unless the file names another
+  std::vector<std::string> notes = {};  ///< what the file says in a manner that is no longer used
+};
+
+/// What came out for the bearings of one joint.
+struct BearingOutcome {
+  int joint = -1;
+  JointBearings bearings;
+};
+
+struct StudyOutcome {
+  LoadStudyResult loads;
+  std::vector<BearingOutcome> bearings;  ///< in the order of StudyFile::bearings
+  std::vector<std::string> warnings;     ///< of loads and bearings together
+};
+
+/// Runs the loads and chooses the bearings.
+/// @throws as RunLoadStudy; std::invalid_argument for bearings at a joint that cannot have them.
+StudyOutcome RunStudy(const StudyFile& file, const LoadStudyOptions& options);
+
+}  // namespace vmech

@@ -1,0 +1,286 @@
+#include "vmech/studies/study_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+
+#include "vmech/dynamics/bearings/catalogue.h"
+#include "vmech/mechanisms/files/reader.h"
+#include "vmech/mechanisms/freedoms.h"
+#include "vmech/studies/read_motion.h"
+
+namespace vmech {
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+constexpr const char* kComponents[] = {"fx", "fy", "fz", "mx", "my", "mz"};
+
+/// Reads the mechanism that a study names; what is wrong with it joins what is wrong with the
+/// study.
+bool ReadNamedMechanism(const Node& node, const std::filesystem::path& folder, StudyFile* file) {
+  const std::string name = node.Text();
+  if (name.empty()) return false;
+  file->mechanism_path = folder / name;
+  try {
+    file->study.mechanism = ReadMechanism(file->mechanism_path);
+    return true;
+  } catch (const FileErrors& errors) {
+    for (const FileError& error : errors.errors()) node.document().Report(error);
+  }
+  return false;
+}
+
+/// The wrench in a row of a table, or in the keys `force` and `moment`.
+Wrenchd WrenchOfRow(const CsvTable& table, const Units& units, size_t row) {
+  Vector6d w = Vector6d::Zero();
+  for (int i = 0; i < 6; ++i) {
+    if (const std::vector<double>* column = table.Find(kComponents[i])) w[i] = (*column)[row];
+  }
+  return {units.force * w.head<3>(), units.torque * w.tail<3>()};
+}
+
+/// A table over the angle of a drive repeats if it fills whole turns: its last row is a whole
+/// number of turns after the first, or the next turn begins within its widest step. Else 0.
+double PeriodOfTurns(const std::vector<double>& at) {
+  if (at.size() < 2) return 0;
+  double widest = 0;
+  for (size_t i = 1; i < at.size(); ++i) widest = std::max(widest, at[i] - at[i - 1]);
+  const double span = at.back() - at.front();
+  const double turns = std::max(1.0, std::ceil(span / kTurn - 1e-9));
+  return turns * kTurn - span <= widest * (1 + 1e-9) ? turns * kTurn : 0;
+}
+
+/// What a table is over, time or the coordinate of the first drive: fills `over` and `at`. Returns
+/// the unit of the first column; none if the columns are wrong.
+std::optional<double> ReadArgument(const Node& node, const CsvTable& table, const Units& units,
+                                   const LoadStudy& study, ExternalLoad* load) {
+  std::string argument = "t";
+  std::string known = "'t'";
+  double unit = units.time;
+  if (study.times.empty()) return {};  // the motion is wrong, as reported there
+  load->over = ExternalLoad::Over::kTime;
+  if (!study.drives.empty()) {
+    const JointDrive& drive = study.drives[0];
+    const Joint& joint = study.mechanism.joints[drive.joint];
+    const std::string driven = NameOfFreedom(joint, drive.freedom);
+    known = fmt::format("'t' or the driven joint '{}'", driven);
+    if (table.names[0] == driven) {
+      argument = driven;
+      unit = IsRotation(joint.type, drive.freedom) ? units.angle : units.length;
+      load->over = ExternalLoad::Over::kDriveCoordinate;
+    }
+  }
+  if (table.names[0] != argument) {
+    ReportInTable(
+        node, table, -1,
+        fmt::format("the first column must be {}, not {}", known, Quoted(table.names[0])));
+    return {};
+  }
+  if (!CheckColumns(node, table, {argument}, {std::begin(kComponents), std::end(kComponents)})) {
+    return {};
+  }
+  for (const double at : table.columns[0]) load->at.push_back(unit * at);
+  return unit;
+}
+
+/// The period of a table: as stated, or whole turns of a drive that rotates.
+double ReadPeriod(const Node& period, double unit, const LoadStudy& study,
+                  const ExternalLoad& load) {
+  if (period) return unit * period.Positive();
+  if (load.over != ExternalLoad::Over::kDriveCoordinate) return 0;
+  const JointDrive& drive = study.drives[0];
+  const JointType type = study.mechanism.joints[drive.joint].type;
+  return IsRotation(type, drive.freedom) ? PeriodOfTurns(load.at) : 0;
+}
+
+/// A table must not reach beyond its period, nor jump where it meets itself again.
+void CheckPeriod(const Node& node, const CsvTable& table, const ExternalLoad& load) {
+  const double span = load.at.back() - load.at.front();
+  if (load.period == 0 || span < load.period * (1 - 1e-9)) return;
+  const int last = static_cast<int>(table.rows()) - 1;
+  if (span > load.period * (1 + 1e-9)) {
+    ReportInTable(node, table, last, "this row is beyond one period of the table");
+    return;
+  }
+  const Vector6d a = load.wrenches.front().Stacked(), b = load.wrenches.back().Stacked();
+  if ((a - b).norm() > 1e-6 * std::max(a.norm(), b.norm())) {
+    ReportInTable(node, table, last, "one period after the first row, but with other values");
+  }
+}
+
+void ReadLoadTable(const Node& node, const Units& units, const std::filesystem::path& folder,
+                   const LoadStudy& study, ExternalLoad* load) {
+  for (const char* key : {"force", "moment"}) {
+    if (const Node extra = node[key]) extra.KeyError("give either this or a table");
+  }
+  const CsvTable table = ReadTable(node["table"], folder);
+  if (table.rows() == 0) return;
+  const std::optional<double> unit = ReadArgument(node["table"], table, units, study, load);
+  if (!unit) return;
+  for (size_t i = 0; i < table.rows(); ++i) load->wrenches.push_back(WrenchOfRow(table, units, i));
+  load->period = ReadPeriod(node["period"], *unit, study, *load);
+  CheckPeriod(node["table"], table, *load);
+}
+
+ExternalLoad ReadExternalLoad(const Node& node, const Units& units,
+                              const std::filesystem::path& folder, const LoadStudy& study) {
+  ExternalLoad load;
+  if (!node.CheckKeys({"link"},
+                      {"description", "at", "axes", "force", "moment", "table", "period"})) {
+    return load;
+  }
+  node["description"].Text();
+  load.link = FindPart(node["link"], "link", study.mechanism.links);
+  load.p_L = units.length * node["at"].Vector3();
+  load.axes = node["axes"].Word<ExternalLoad::Axes>(
+      {{"world", ExternalLoad::Axes::kWorld}, {"link", ExternalLoad::Axes::kLink}},
+      ExternalLoad::Axes::kWorld);
+  if (node["table"]) {
+    ReadLoadTable(node, units, folder, study, &load);
+    return load;
+  }
+  if (!node["force"] && !node["moment"]) node.KeyError("give 'force', 'moment' or 'table'");
+  if (const Node period = node["period"]) period.KeyError("used with a table only");
+  load.at = {0};
+  load.wrenches = {
+      {units.force * node["force"].Vector3(), units.torque * node["moment"].Vector3()}};
+  return load;
+}
+
+Arrangement ReadArrangement(const Node& node, const Units& units) {
+  Arrangement arrangement;
+  if (const Node positions = node["positions"]) {
+    arrangement.positions.clear();
+    for (const Node& entry : positions.List()) {
+      arrangement.positions.push_back(units.length * entry.Number());
+    }
+    if (arrangement.positions.empty()) positions.Error("a joint has one or two bearings");
+  }
+  arrangement.locating = node["locating"].Integer(0, 0, 1);
+  return arrangement;
+}
+
+BearingRequirements ReadRequirements(const Node& node, const Units& units) {
+  BearingRequirements asked;
+  if (const std::vector<double> shaft = node["shaft"].Numbers(2); !shaft.empty()) {
+    asked.shaft_min = units.length * shaft[0];
+    asked.shaft_max = units.length * shaft[1];
+  }
+  if (const Node housing = node["housing"]) asked.housing_max = units.length * housing.Positive();
+  asked.life_hours = node["life_hours"].NonNegative(asked.life_hours);
+  if (const Node pair = node["pair_life_hours"]) asked.pair_life_hours = pair.NonNegative();
+  asked.reliability = node["reliability"].Positive(asked.reliability);
+  asked.static_safety = node["static_safety"].Positive(asked.static_safety);
+  asked.lubrication = node["lubrication"].Word<Lubrication>(
+      {{"grease", Lubrication::kGrease}, {"oil", Lubrication::kOil}}, asked.lubrication);
+  return asked;
+}
+
+/// An entry of `bearings`, whose key names a joint that turns about its z axis.
+BearingRequest ReadBearings(const Node& node, const Units& units, const Mechanism& mechanism) {
+  BearingRequest request;
+  std::vector<std::string> names;
+  for (const Joint& joint : mechanism.joints) names.push_back(joint.name);
+  request.joint = FindJoint(mechanism, node.key());
+  if (request.joint < 0) {
+    node.KeyError("joint " + Quoted(node.key()) + " not found" + DidYouMean(node.key(), names));
+    return request;
+  }
+  const JointType type = mechanism.joints[request.joint].type;
+  if (type != JointType::kRevolute && type != JointType::kCylindrical &&
+      type != JointType::kScrew) {
+    node.KeyError(fmt::format("a {} joint has no axis for rolling bearings", NameOf(type)));
+    return request;
+  }
+  if (!node.CheckKeys({}, {"description", "positions", "locating", "shaft", "housing", "life_hours",
+                           "pair_life_hours", "reliability", "static_safety", "lubrication"})) {
+    return request;
+  }
+  node["description"].Text();
+  request.arrangement = ReadArrangement(node, units);
+  request.requirements = ReadRequirements(node, units);
+  if (request.arrangement.positions.size() < 2 && node["pair_life_hours"]) {
+    node["pair_life_hours"].KeyError("there is one bearing; give two positions, or leave this out");
+  }
+  try {
+    request.arrangement.Validate();
+    request.requirements.Validate();
+  } catch (const std::invalid_argument& defect) {
+    node.KeyError(defect.what());
+  }
+  return request;
+}
+
+ReactionRule ReadRule(const Node& node) {
+  return node.Word<ReactionRule>({{NameOf(ReactionRule::kStiffness), ReactionRule::kStiffness},
+                                  {NameOf(ReactionRule::kMinimumNorm), ReactionRule::kMinimumNorm},
+                                  {NameOf(ReactionRule::kPaperJoint), ReactionRule::kPaperJoint}},
+                                 ReactionRule::kStiffness);
+}
+
+/// What refers to the parts of the mechanism.
+void ReadReferences(const Node& root, const std::filesystem::path& folder, StudyFile* file) {
+  const Units units = ReadUnits(root["units"]);
+  LoadStudy& loads = file->study;
+  ReadMotion(root["motion"], units, folder, &loads);
+  for (const Node& entry : root["external"].List()) {
+    loads.external.push_back(ReadExternalLoad(entry, units, folder, loads));
+  }
+  if (const Node length = root["norm_length"]) loads.norm_length = units.length * length.Positive();
+  for (const Node& entry : root["bearings"].Map()) {
+    file->bearings.push_back(ReadBearings(entry, units, loads.mechanism));
+  }
+}
+
+/// The catalogue that a study names, or the built-in one.
+std::vector<Bearing> ReadNamedCatalogue(const Node& node, const std::filesystem::path& folder) {
+  if (!node) return BuiltInCatalogue();
+  try {
+    return ReadCatalogue((folder / node.Text()).string());
+  } catch (const std::runtime_error& defect) {
+    node.Error(defect.what());
+  }
+  return {};
+}
+
+void CheckVersion(const Node& version) {
+  const std::string text = version.Text(std::string(kStudyFormat));
+  if (text == kStudyFormat) return;
+  version.Error(fmt::format("this is format {}; only {} can be read", Quoted(text), kStudyFormat));
+}
+
+}  // namespace
+
+StudyFile ReadStudy(const std::filesystem::path& path) {
+  return ParseStudy(ReadTextFile(path), path);
+}
+
+StudyFile ParseStudy(std::string_view text, const std::filesystem::path& path) {
+  Document document(text, path.string());
+  const Node root = document.root();
+  StudyFile file;
+  file.path = path;
+  if (root.CheckKeys({"vmech_study", "mechanism", "motion"},
+                     {"name", "description", "units", "external", "rule", "norm_length", "bearings",
+                      "catalogue", "limits"})) {
+    CheckVersion(root["vmech_study"]);
+    file.name = root["name"].Text(path.stem().string());
+    file.description = root["description"].Text();
+    file.study.rule = ReadRule(root["rule"]);
+    file.study.units = DisplayUnitsOf(root["units"], ReadUnits(root["units"]));
+    file.study.stop_at_limits = root["limits"].Word<bool>({{"warn", false}, {"stop", true}}, false);
+    const std::filesystem::path folder = path.parent_path();
+    file.catalogue = ReadNamedCatalogue(root["catalogue"], folder);
+    if (ReadNamedMechanism(root["mechanism"], folder, &file)) ReadReferences(root, folder, &file);
+  }
+  document.ThrowErrors();
+  file.motion = MotionInWords(root["motion"], file.study);
+  file.notes = NotesOnFreedoms(root["motion"], file.study);
+  return file;
+}
+
+}  // namespace vmech
