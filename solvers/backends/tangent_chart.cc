@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "vmech/base/linear_algebra/complete_orthogonal.h"
-#include "vmech/kinematics/loops/dimensionless_loops.h"
 
 namespace vmech {
 namespace {

@@ -1,5 +1,4 @@
 #include "vmech/base/linear_algebra/complete_orthogonal.h"
-#include "vmech/kinematics/loops/dimensionless_loops.h"
 
 #include <gtest/gtest.h>
 
