@@ -48,7 +48,7 @@ Vector3d Logarithm(const Matrix3d& R) {
 }
 
 /// By a call of its own, which leaves the registers to the short ones.
-[[gnu::noinline]] Four LongTurn(const Axes& G, const Axes& H) {
+[[gnu::noinline]] Four LongTurn(const Frame& G, const Frame& H) {
   return FourOf(Logarithm(RotationOf(H) * RotationOf(G).transpose()));
 }
 
@@ -102,10 +102,10 @@ RodriguesCoefficients RodriguesAt(double x2) {
 }  // namespace
 
 Vector6d HandError(const Posed& X_WG, const Posed& X_WH) {
-  return Vector6Of(HandError(AxesOf(X_WG), AxesOf(X_WH)));
+  return Vector6Of(HandError(FrameOf(X_WG), FrameOf(X_WH)));
 }
 
-Screw HandError(const Axes& G, const Axes& H) noexcept {
+Screw HandError(const Frame& G, const Frame& H) noexcept {
   // Trace and skew part of R_WH R_WG' = sum h g', which is not written down for a short turn.
   const Four traces = G.x * H.x + G.y * H.y + G.z * H.z;
   const double y = 0.25 * (3 - (traces[0] + traces[1] + traces[2]));
@@ -117,10 +117,10 @@ Screw HandError(const Axes& G, const Axes& H) noexcept {
 }
 
 Posed Displaced(const Posed& X, const Vector6d& way) noexcept {
-  return PoseOf(Displaced(AxesOf(X), ScrewOf(way)));
+  return PoseOf(Displaced(FrameOf(X), ScrewOf(way)));
 }
 
-Axes Displaced(const Axes& X, const Screw& way) noexcept {
+Frame Displaced(const Frame& X, const Screw& way) noexcept {
   const Four& r = way.angular;
   const auto [s, c] = RodriguesAt(Dot(r, r));
   const auto turned = [&, s = s, c = c](const Four& a) {

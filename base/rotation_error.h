@@ -16,12 +16,12 @@ enum class RotationError {
 
 /// e1 [6; m, rad]: displacement and logarithm of the rotation that lead from G to H, world axes.
 Vector6d HandError(const Posed& X_WG, const Posed& X_WH);
-Screw HandError(const Axes& X_WG, const Axes& X_WH) noexcept;
+Screw HandError(const Frame& X_WG, const Frame& X_WH) noexcept;
 
 /// Its inverse: the pose to which `way` [dp; dr] leads from X, HandError(X, Displaced(X, way)) =
 /// way for turns below half a turn.
 Posed Displaced(const Posed& X, const Vector6d& way) noexcept;
-Axes Displaced(const Axes& X, const Screw& way) noexcept;
+Frame Displaced(const Frame& X, const Screw& way) noexcept;
 
 /// The rotation about r by |r| [rad].
 Matrix3d RotationBy(const Vector3d& r) noexcept;

@@ -1,37 +1,73 @@
 #pragma once
 
 #include "vmech/base/four.h"
+#include "vmech/base/pose.h"
 
 namespace vmech {
 
-// Vectors in whole registers: a vector of three is a Four whose last number is zero. World axes. In
-// screws about the world's origin Wo twists of a chain add up, and wrenches are handed on without
-// being shifted; screw_algebra.h computes with them. Functions that return them by value are for
-// the sources of the library alone: without AVX g++ puts such temporaries where they are not
-// aligned.
+// Poses, twists, wrenches and inertias as the kernels compute with them, world axes. T is the number
+// of the computation: a double, or whatever takes several poses or a derivative along. In screws
+// about a point of the world twists of a chain add up, and wrenches are handed on without being
+// shifted; screw_algebra.h computes with them. Functions that return them by value are for the
+// sources of the library alone: without AVX g++ puts such temporaries where they are not aligned.
 
-/// The axes of a frame B and its origin Bo in the world: X_WB in four columns.
-struct Axes {
+template <typename T>
+struct TripleType {
+  using type = Vector3<T>;
+};
+template <>
+struct TripleType<double> {
+  using type = Four;
+};
+/// A vector in space: of doubles in one register, as a Four whose last number is zero.
+template <typename T>
+using Triple = typename TripleType<T>::type;
+
+/// A frame B in the world: the columns of R_WB, and its origin Bo.
+template <typename T>
+struct FrameT {
+  Vector3<T> x = Vector3<T>::UnitX(), y = Vector3<T>::UnitY(), z = Vector3<T>::UnitZ(),
+             p = Vector3<T>::Zero();
+};
+template <>
+struct FrameT<double> {
   Four x = {1, 0, 0, 0}, y = {0, 1, 0, 0}, z = {0, 0, 1, 0}, p = {0, 0, 0, 0};
 };
+using Frame = FrameT<double>;
 
-/// A twist: the velocity of what passes Wo, and the angular velocity. Or a wrench: the force, and
-/// its moment about Wo. Or either about another point, if its description says so.
-struct Screw {
+/// A twist: the velocity of what passes the reference point, and the angular velocity. Or a wrench:
+/// the force, and its moment about the reference point. Or either about another point, if its
+/// description says so.
+template <typename T>
+struct ScrewT {
+  Vector3<T> linear = Vector3<T>::Zero(), angular = Vector3<T>::Zero();
+};
+template <>
+struct ScrewT<double> {
   Four linear{}, angular{};
 };
+using Screw = ScrewT<double>;
 
-/// A frame in motion: its axes, and its twist about its own origin.
+/// A frame in motion: its pose, and its twist about its own origin.
 struct MovingFrame {
-  Axes X;
+  Frame X;
   Screw V;
 };
 
-/// The inertia of a rigid body or of several as one, about Wo.
-struct ScrewInertia {
-  double mass = 0;
-  Four moment{};          ///< mass times centre of gravity [kg m]
-  Four Ix{}, Iy{}, Iz{};  ///< columns of the inertia [kg m^2]
+/// The inertia of a rigid body or of several as one, about the reference point.
+template <typename T>
+struct ScrewInertiaT {
+  T mass = T(0);
+  Vector3<T> moment = Vector3<T>::Zero();  ///< mass times centre of gravity [kg m]
+  /// Columns of the inertia [kg m^2].
+  Vector3<T> Ix = Vector3<T>::Zero(), Iy = Vector3<T>::Zero(), Iz = Vector3<T>::Zero();
 };
+template <>
+struct ScrewInertiaT<double> {
+  double mass = 0;
+  Four moment{};
+  Four Ix{}, Iy{}, Iz{};
+};
+using ScrewInertia = ScrewInertiaT<double>;
 
 }  // namespace vmech

@@ -2,13 +2,13 @@
 
 #include <cmath>
 #include <cstring>
+#include <type_traits>
 
-#include "vmech/base/pose.h"
 #include "vmech/base/screw.h"
 
 namespace vmech {
 
-// Functions of a few instructions each, which keep the last number of a vector zero. How a Four is
+// Functions of a few instructions each, which keep the last number of a Four zero. How a Four is
 // passed depends on the instruction set: for the sources of the library alone.
 
 /// The last number becomes zero: by a mask, for which compilers find one instruction.
@@ -22,6 +22,35 @@ inline Four FourOf(const Vector3d& a) noexcept {
 inline Vector3d Vector3Of(const Four& a) noexcept {
   return {a[0], a[1], a[2]};
 }
+template <typename T>
+const Vector3<T>& Vector3Of(const Vector3<T>& a) noexcept {
+  return a;
+}
+template <typename T>
+Triple<T> ZeroTriple() noexcept {
+  if constexpr (std::is_same_v<T, double>) {
+    return Four{};
+  } else {
+    return Vector3<T>::Zero();
+  }
+}
+/// As the kernels of number T take it.
+template <typename T>
+Triple<T> TripleOf(const Vector3d& a) noexcept {
+  if constexpr (std::is_same_v<T, double>) {
+    return FourOf(a);
+  } else {
+    return a.cast<T>();
+  }
+}
+template <typename T>
+Triple<T> TripleOf(const T& x, const T& y, const T& z) noexcept {
+  if constexpr (std::is_same_v<T, double>) {
+    return Four{x, y, z, 0};
+  } else {
+    return {x, y, z};
+  }
+}
 
 inline Four Cross(const Four& a, const Four& b) noexcept {
   const Four a_yzx = __builtin_shufflevector(a, a, 1, 2, 0, 3);
@@ -29,26 +58,36 @@ inline Four Cross(const Four& a, const Four& b) noexcept {
   const Four zxy = a * b_yzx - a_yzx * b;
   return __builtin_shufflevector(zxy, zxy, 1, 2, 0, 3);
 }
+template <typename A, typename B>
+Vector3<typename A::Scalar> Cross(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
+  return a.cross(b);
+}
 inline double Dot(const Four& a, const Four& b) noexcept {
   const Four ab = a * b;
   return (ab[0] + ab[2]) + ab[1];
+}
+template <typename A, typename B>
+typename A::Scalar Dot(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
+  return a.dot(b);
 }
 inline double Length(const Four& a) noexcept {
   return std::sqrt(Dot(a, a));
 }
 
 /// R a.
-inline Four Turned(const Axes& X, double a0, double a1, double a2) noexcept {
+template <typename T>
+Triple<T> Rotate(const FrameT<T>& X, const T& a0, const T& a1, const T& a2) noexcept {
   return a0 * X.x + a1 * X.y + a2 * X.z;
 }
-inline Four Turned(const Axes& X, const Vector3d& a) noexcept {
-  return Turned(X, a[0], a[1], a[2]);
+template <typename T>
+Triple<T> Rotate(const FrameT<T>& X, const std::type_identity_t<Triple<T>>& a) noexcept {
+  return a[0] * X.x + a[1] * X.y + a[2] * X.z;
 }
-inline Four Turned(const Axes& X, const Four& a) noexcept {
-  return Turned(X, a[0], a[1], a[2]);
+inline Four Rotate(const Frame& X, const Vector3d& a) noexcept {
+  return Rotate(X, a[0], a[1], a[2]);
 }
 /// R'a.
-inline Four InverseRotate(const Axes& X, const Four& a) noexcept {
+inline Four InverseRotate(const Frame& X, const Four& a) noexcept {
   const Four x = X.x * a, y = X.y * a, z = X.z * a, zero{};
   // By halves of registers: one instruction each.
   const auto sums = [](const Four& a, const Four& b) {
@@ -57,25 +96,33 @@ inline Four InverseRotate(const Axes& X, const Four& a) noexcept {
   const Four xy = sums(x, y), z0 = sums(z, zero);
   return __builtin_shufflevector(xy, z0, 0, 1, 4, 5) + __builtin_shufflevector(xy, z0, 2, 3, 6, 7);
 }
+template <typename T>
+Vector3<T> InverseRotate(const FrameT<T>& X, const std::type_identity_t<Vector3<T>>& a) noexcept {
+  return {X.x.dot(a), X.y.dot(a), X.z.dot(a)};
+}
 /// R A.
-inline Axes Turned(const Axes& X, const Matrix3d& A, const Four& p) noexcept {
-  return {Turned(X, A.col(0)), Turned(X, A.col(1)), Turned(X, A.col(2)), p};
+template <typename T>
+FrameT<T> Rotate(const FrameT<T>& X, const Matrix3<T>& A, const Triple<T>& p) noexcept {
+  return {Rotate(X, A(0, 0), A(1, 0), A(2, 0)), Rotate(X, A(0, 1), A(1, 1), A(2, 1)),
+          Rotate(X, A(0, 2), A(1, 2), A(2, 2)), p};
 }
 /// X_WB p_B.
-inline Four PointInWorld(const Axes& X, const Vector3d& p) noexcept {
-  return X.p + Turned(X, p);
+template <typename T>
+Triple<T> PointInWorld(const FrameT<T>& X, const std::type_identity_t<Triple<T>>& p) noexcept {
+  return X.p + Rotate(X, p);
 }
-inline Four PointInWorld(const Axes& X, const Four& p) noexcept {
-  return X.p + Turned(X, p);
+inline Four PointInWorld(const Frame& X, const Vector3d& p) noexcept {
+  return X.p + Rotate(X, p);
 }
 /// X_WB X_BC.
-inline Axes operator*(const Axes& X, const Axes& Y) noexcept {
-  return {Turned(X, Y.x), Turned(X, Y.y), Turned(X, Y.z), X.p + Turned(X, Y.p)};
+template <typename T>
+FrameT<T> operator*(const FrameT<T>& X, const FrameT<T>& Y) noexcept {
+  return {Rotate(X, Y.x), Rotate(X, Y.y), Rotate(X, Y.z), X.p + Rotate(X, Y.p)};
 }
-inline Axes operator*(const Axes& X, const Posed& Y) noexcept {
-  return Turned(X, Y.R, PointInWorld(X, Y.p));
+inline Frame operator*(const Frame& X, const Posed& Y) noexcept {
+  return Rotate(X, Y.R, PointInWorld(X, Y.p));
 }
-inline Axes AxesOf(const Posed& X) noexcept {
+inline Frame FrameOf(const Posed& X) noexcept {
   // R and p as the twelve numbers that they are: whole registers, one number too many in each.
   static_assert(sizeof(X) == 12 * sizeof(double));
   const auto from = [&](int i) {
@@ -87,7 +134,17 @@ inline Axes AxesOf(const Posed& X) noexcept {
   return {FirstThree(from(0)), FirstThree(from(3)), FirstThree(from(6)),
           FirstThree(__builtin_shufflevector(p, p, 1, 2, 3, 0))};
 }
-inline Matrix3d RotationOf(const Axes& X) noexcept {
+/// As the kernels of number T take it.
+template <typename T>
+FrameT<T> FrameOf(const Posed& X) noexcept {
+  if constexpr (std::is_same_v<T, double>) {
+    return FrameOf(X);
+  } else {
+    return {TripleOf<T>(X.R.col(0)), TripleOf<T>(X.R.col(1)), TripleOf<T>(X.R.col(2)),
+            TripleOf<T>(X.p)};
+  }
+}
+inline Matrix3d RotationOf(const Frame& X) noexcept {
   Matrix3d R;
   // Each column's fourth number falls on the next column, which comes after it.
   std::memcpy(R.data(), &X.x, sizeof(Four));
@@ -95,34 +152,47 @@ inline Matrix3d RotationOf(const Axes& X) noexcept {
   std::memcpy(R.data() + 6, &X.z, 3 * sizeof(double));
   return R;
 }
-inline Posed PoseOf(const Axes& X) noexcept {
+template <typename T>
+Matrix3<T> RotationOf(const FrameT<T>& X) noexcept {
+  Matrix3<T> R;
+  R << X.x, X.y, X.z;
+  return R;
+}
+template <typename T>
+Pose<T> PoseOf(const FrameT<T>& X) noexcept {
   return {RotationOf(X), Vector3Of(X.p)};
 }
 
 inline Screw ScrewOf(const Vector6d& a) noexcept {
   return {FirstThree(Four{a[0], a[1], a[2], a[2]}), FirstThree(Four{a[3], a[4], a[5], a[5]})};
 }
-inline Vector6d Vector6Of(const Screw& a) noexcept {
+template <typename T>
+Vector6<T> Vector6Of(const ScrewT<T>& a) noexcept {
   return {a.linear[0], a.linear[1], a.linear[2], a.angular[0], a.angular[1], a.angular[2]};
 }
 
-inline Screw& operator+=(Screw& a, const Screw& b) noexcept {
+template <typename T>
+ScrewT<T>& operator+=(ScrewT<T>& a, const ScrewT<T>& b) noexcept {
   a.linear += b.linear;
   a.angular += b.angular;
   return a;
 }
-inline Screw& operator-=(Screw& a, const Screw& b) noexcept {
+template <typename T>
+ScrewT<T>& operator-=(ScrewT<T>& a, const ScrewT<T>& b) noexcept {
   a.linear -= b.linear;
   a.angular -= b.angular;
   return a;
 }
-inline Screw operator+(const Screw& a, const Screw& b) noexcept {
+template <typename T>
+ScrewT<T> operator+(const ScrewT<T>& a, const ScrewT<T>& b) noexcept {
   return {a.linear + b.linear, a.angular + b.angular};
 }
-inline Screw operator-(const Screw& a, const Screw& b) noexcept {
+template <typename T>
+ScrewT<T> operator-(const ScrewT<T>& a, const ScrewT<T>& b) noexcept {
   return {a.linear - b.linear, a.angular - b.angular};
 }
-inline Screw operator*(double s, const Screw& a) noexcept {
+template <typename T>
+ScrewT<T> operator*(const std::type_identity_t<T>& s, const ScrewT<T>& a) noexcept {
   return {s * a.linear, s * a.angular};
 }
 
@@ -136,24 +206,49 @@ inline double Power(const Screw& wrench, const Screw& twist) noexcept {
   const Four power = wrench.linear * twist.linear + wrench.angular * twist.angular;
   return (power[0] + power[2]) + power[1];
 }
+template <typename T>
+T Power(const ScrewT<T>& wrench, const ScrewT<T>& twist) noexcept {
+  return Dot(wrench.linear, twist.linear) + Dot(wrench.angular, twist.angular);
+}
 /// The velocity of a point Q that moves with a twist.
-inline Four VelocityAt(const Four& p_WQ, const Screw& twist) noexcept {
+template <typename T>
+Triple<T> VelocityAt(const std::type_identity_t<Triple<T>>& p_WQ, const ScrewT<T>& twist) noexcept {
   return twist.linear + Cross(twist.angular, p_WQ);
 }
 /// A wrench that is given about a point Q.
 inline Screw WrenchAt(const Four& p_WQ, const Four& force, const Four& moment) noexcept {
   return {force, moment + Cross(p_WQ, force)};
 }
+template <typename T>
+ScrewT<T> WrenchAt(const Vector3<T>& p_WQ, const std::type_identity_t<Vector3<T>>& force,
+                   const std::type_identity_t<Vector3<T>>& moment) noexcept {
+  return {force, moment + Cross(p_WQ, force)};
+}
+/// A wrench about the origin and in the axes of X.
+template <typename T>
+Wrench<T> WrenchIn(const FrameT<T>& X, const ScrewT<T>& W) noexcept {
+  const Triple<T> moment = W.angular - Cross(X.p, W.linear);
+  return {Vector3Of(InverseRotate(X, W.linear)), Vector3Of(InverseRotate(X, moment))};
+}
+/// One that is given there.
+template <typename T>
+ScrewT<T> WrenchFrom(const FrameT<T>& X, const Wrench<T>& W) noexcept {
+  return WrenchAt(X.p, Rotate(X, W.force[0], W.force[1], W.force[2]),
+                  Rotate(X, W.moment[0], W.moment[1], W.moment[2]));
+}
 /// The rate at which a twist U changes that is carried along by a twist V.
-inline Screw CarriedTwist(const Screw& V, const Screw& U) noexcept {
+template <typename T>
+ScrewT<T> CarriedTwist(const ScrewT<T>& V, const ScrewT<T>& U) noexcept {
   return {Cross(V.angular, U.linear) + Cross(V.linear, U.angular), Cross(V.angular, U.angular)};
 }
 /// The rate at which a wrench or a momentum changes that is carried along by a twist V.
-inline Screw CarriedWrench(const Screw& V, const Screw& F) noexcept {
+template <typename T>
+ScrewT<T> CarriedWrench(const ScrewT<T>& V, const ScrewT<T>& F) noexcept {
   return {Cross(V.angular, F.linear), Cross(V.angular, F.angular) + Cross(V.linear, F.linear)};
 }
 
-inline ScrewInertia& operator+=(ScrewInertia& a, const ScrewInertia& b) noexcept {
+template <typename T>
+ScrewInertiaT<T>& operator+=(ScrewInertiaT<T>& a, const ScrewInertiaT<T>& b) noexcept {
   a.mass += b.mass;
   a.moment += b.moment;
   a.Ix += b.Ix;
@@ -162,8 +257,9 @@ inline ScrewInertia& operator+=(ScrewInertia& a, const ScrewInertia& b) noexcept
   return a;
 }
 /// The momentum at a twist.
-inline Screw operator*(const ScrewInertia& I, const Screw& V) noexcept {
-  const Four& w = V.angular;
+template <typename T>
+ScrewT<T> operator*(const ScrewInertiaT<T>& I, const ScrewT<T>& V) noexcept {
+  const Triple<T>& w = V.angular;
   return {I.mass * V.linear + Cross(w, I.moment),
           w[0] * I.Ix + w[1] * I.Iy + w[2] * I.Iz + Cross(I.moment, V.linear)};
 }

@@ -240,7 +240,8 @@ double LinkDistance(const KinematicTree& tree, const VectorXd& a, const VectorXd
   double distance = 0;
   for (size_t i = 0; i < tree.nodes.size(); ++i) {
     if (tree.nodes[i].link < 0) continue;
-    const Posed &X = at_a.nodes[i].X_WB, &Y = at_b.nodes[i].X_WB;
+    const int node = static_cast<int>(i);
+    const Posed X = PoseInWorld(at_a, node, {}), Y = PoseInWorld(at_b, node, {});
     distance = std::max({distance, (X.p - Y.p).norm() / tree.length, (X.R - Y.R).norm()});
   }
   return distance;

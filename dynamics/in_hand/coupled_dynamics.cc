@@ -115,7 +115,7 @@ CoupledDynamics::CoupledDynamics(const KinematicTree& tree, const GraspFrame& gr
   ListFreedoms();
   pose_.Set(q);
   RequireClosed("CoupledDynamics", pose_.e2().norm(), kOpen);
-  hand_.X = pose_.grasp_axes();
+  hand_.X = pose_.grasp_frame();
   UpdateInertia();
   UpdateVelocities();
   BiasForces();
@@ -176,7 +176,7 @@ void CoupledDynamics::GraspAt(const GraspFrame& grasp) noexcept {
 }
 
 CoupledStatus CoupledDynamics::Step(const Posed& X_WH, const Vector6d& V_WH) noexcept {
-  return Step({AxesOf(X_WH), ScrewOf(V_WH)});
+  return Step({FrameOf(X_WH), ScrewOf(V_WH)});
 }
 
 CoupledStatus CoupledDynamics::Step(const MovingFrame& hand) noexcept {
@@ -421,7 +421,7 @@ void CoupledDynamics::LimitEnergyGain(double before) noexcept {
 
 /// e1, and the energy of the coupling.
 void CoupledDynamics::UpdateError() noexcept {
-  const Screw e1 = HandError(pose_.grasp_axes(), hand_.X);
+  const Screw e1 = HandError(pose_.grasp_frame(), hand_.X);
   e1_ = e1;
   if (!coupled_) return;
   const Screw pull = Scaled(coupling_.stiffness, e1);

@@ -11,15 +11,6 @@
 #include "vmech/kinematics/tree/validity.h"
 
 namespace vmech {
-namespace {
-
-/// About the origin and in the axes of X.
-Wrenchd WrenchIn(const Axes& X, const Screw& W) {
-  const Four moment = W.angular - Cross(X.p, W.linear);
-  return {Vector3Of(InverseRotate(X, W.linear)), Vector3Of(InverseRotate(X, moment))};
-}
-
-}  // namespace
 
 GraspedMechanism::GraspedMechanism(const KinematicTree& tree, const GraspFrame& grasp)
     : tree_(tree),
@@ -27,6 +18,7 @@ GraspedMechanism::GraspedMechanism(const KinematicTree& tree, const GraspFrame& 
       row_scale_(LoopRowScale(tree)),
       ws_(tree),
       inertias_(tree),
+      joints_(tree.mechanism.joints.size()),
       J_(tree.nv),
       C_(MatrixXd::Zero(PaddedSize(tree.rows), tree.nv)),
       e2_(VectorXd::Zero(C_.rows())) {
@@ -44,7 +36,7 @@ void GraspedMechanism::SetLoops(const VectorXd& q) noexcept {
   LoopErrors(tree_, &ws_);
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
     const Loop& loop = tree_.loops[l];
-    const Vector6d& e2 = ws_.loops[l].state.e2;
+    const Vector6d& e2 = ws_.loops[l].e2;
     for (int k = 0; k < loop.rows; ++k) e2_[loop.row + k] = row_scale_[loop.row + k] * e2[k];
   }
 }
@@ -52,25 +44,29 @@ void GraspedMechanism::SetLoops(const VectorXd& q) noexcept {
 void GraspedMechanism::SetJacobians() noexcept {
   BodyInertias(tree_, ws_, &inertias_);
   G_ = ws_.at(grasp_.node).X * grasp_.X_BG;
-  PointJacobian(tree_, ws_, grasp_.node, G_.p, &J_);
+  GraspJacobian(tree_, ws_, grasp_.node, G_, &J_);
   LoopWrenches(tree_, row_scale_.data(), &ws_);
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
     const Loop& loop = tree_.loops[l];
     for (const LoopColumn& c : loop.columns) {
       const Screw S = c.sign * ws_.S[c.v];
       double* column = &C_(loop.row, c.v);
-      for (int k = 0; k < loop.rows; ++k) column[k] = Power(ws_.loops[l].rows[k], S);
+      for (int k = 0; k < loop.rows; ++k) column[k] = Power(ws_.loops[l].wrench[k], S);
     }
   }
 }
 
+Frame GraspedMechanism::grasp_frame() const noexcept {
+  return {G_.x, G_.y, G_.z, G_.p + FourOf(ws_.reference)};
+}
+
 Posed GraspedMechanism::X_WG() const noexcept {
-  return PoseOf(G_);
+  return PoseOf(grasp_frame());
 }
 
 Matrix6Xd GraspedMechanism::J() const {
   Matrix6Xd J(6, tree_.nv);
-  FillMatrix(J_, &J);
+  for (int v = 0; v < tree_.nv; ++v) J.col(v) = Vector6Of(J_[v]);
   return J;
 }
 
@@ -83,7 +79,7 @@ void GraspedMechanism::ComputeWeightedJacobian(const Screw& root, MatrixXd* B) c
 }
 
 Posed GraspedMechanism::X_WB(int node) const noexcept {
-  return PoseOf(ws_.at(node).X);
+  return PoseInWorld(ws_, node, {});
 }
 
 Screw GraspedMechanism::Twist(const VectorXd& v) const noexcept {
@@ -112,7 +108,7 @@ void GraspedMechanism::ComputeLoopBias(double s, VectorXd* d) noexcept {
 }
 
 Screw GraspedMechanism::GraspBias() const noexcept {
-  const ScrewWorkspace::Node& node = ws_.at(grasp_.node);
+  const TreeWorkspace<double>::Node& node = ws_.at(grasp_.node);
   const Screw A = node.A - ws_.at(-1).A;
   const Four a = VelocityAt(G_.p, A) + Cross(node.V.angular, VelocityAt(G_.p, node.V));
   return {a, A.angular};
@@ -124,30 +120,24 @@ void GraspedMechanism::SetAccelerations(const VectorXd& vdot) noexcept {
 
 void GraspedMechanism::ComputeForces(VectorXd* tau) noexcept {
   GyroscopicWrenches(tree_, inertias_, &ws_);
-  NewtonEuler(tree_, inertias_, &ws_, tau->data());
+  NewtonEuler<double>(tree_, inertias_, nullptr, &ws_, tau->data());
 }
 
 void GraspedMechanism::LoadJoints(const Screw& w, const VectorXd& mu,
                                   std::vector<Wrenchd>* joints) noexcept {
-  NewtonEuler(tree_, inertias_, &ws_, nullptr);
-  const Screw hand = WrenchAt(G_.p, w.linear, w.angular);
-  for (int n = grasp_.node; n >= 0; n = tree_.nodes[n].parent) ws_.at(n).F -= hand;
+  NewtonEuler<double>(tree_, inertias_, nullptr, &ws_, nullptr);
+  ApplyAlongBranch(tree_, grasp_.node, WrenchAt(G_.p, w.linear, w.angular), &ws_);
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
     const Loop& loop = tree_.loops[l];
-    const LoopScrews& s = ws_.loops[l];
     Screw W;
-    for (int k = 0; k < loop.rows; ++k) W -= mu[loop.row + k] * s.rows[k];
-    for (const LoopNode& n : loop.path) ws_.at(n.node).F -= n.sign * W;
-    (*joints)[loop.joint] = WrenchIn(s.F, W);
+    for (int k = 0; k < loop.rows; ++k) W -= mu[loop.row + k] * ws_.loops[l].wrench[k];
+    ApplyAroundLoop(loop, W, &ws_);
+    joints_[loop.joint].W = W;
   }
+  TreeJointWrenches(tree_, ws_, &joints_);
+  JointFrames(tree_, ws_, &joints_);
   for (size_t j = 0; j < joints->size(); ++j) {
-    const JointPlacement& place = tree_.placements[j];
-    if (place.tree_node < 0) continue;
-    const Axes F = ws_.at(place.first_node).X * place.X_AF;
-    const Four p_WM = PointInWorld(ws_.at(place.second_node).X, place.X_BM.p);
-    const Screw& W = ws_.at(place.tree_node).F;
-    const double sign = tree_.nodes[place.tree_node].reversed ? -1 : 1;
-    (*joints)[j] = WrenchIn({F.x, F.y, F.z, p_WM}, sign * W);
+    (*joints)[j] = WrenchIn(joints_[j].F, joints_[j].W);
   }
 }
 

@@ -2,7 +2,8 @@
 
 #include <vector>
 
-#include "vmech/dynamics/rigid_body/screw_dynamics.h"
+#include "vmech/dynamics/reactions/joint_wrenches.h"
+#include "vmech/dynamics/rigid_body/newton_euler.h"
 #include "vmech/kinematics/inverse/inverse_kinematics.h"
 
 namespace vmech {
@@ -27,7 +28,7 @@ class GraspedMechanism {
   void SetJacobians() noexcept;
 
   Posed X_WG() const noexcept;
-  const Axes& grasp_axes() const noexcept { return G_; }  ///< the same
+  Frame grasp_frame() const noexcept;  ///< the same
   Posed X_WB(int node) const noexcept;
   Matrix6Xd J() const;  ///< [6, nv], V_WG = J v
   /// B [8, nv] = root J with zeros below either three rows: B'B = J' root^2 J.
@@ -60,16 +61,17 @@ class GraspedMechanism {
   /// multipliers of M v' + h = J' w - C' mu.
   void LoadJoints(const Screw& w, const VectorXd& mu, std::vector<Wrenchd>* joints) noexcept;
 
-  /// Zero with all centres of gravity at the height of Wo [J].
+  /// Zero with all centres of gravity at the height of the reference point [J].
   double WeightEnergy() const noexcept { return vmech::WeightEnergy(tree_, inertias_); }
 
  private:
   const KinematicTree& tree_;
   GraspFrame grasp_;
   VectorXd row_scale_;
-  ScrewWorkspace ws_;
-  ScrewInertias inertias_;
-  Axes G_;                // of the grasp frame
+  TreeWorkspace<double> ws_;
+  TreeInertias<double> inertias_;
+  std::vector<JointState<double>> joints_;
+  Frame G_;                // about the reference point
   std::vector<Screw> J_;  // columns
   MatrixXd C_;
   VectorXd e2_;

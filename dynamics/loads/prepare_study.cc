@@ -12,7 +12,6 @@
 #include "vmech/dynamics/loads/study_validity.h"
 #include "vmech/dynamics/rigid_body/passive.h"
 #include "vmech/kinematics/loops/assembled_mechanism.h"
-#include "vmech/kinematics/tree/jacobian.h"
 #include "vmech/mechanisms/freedoms.h"
 
 namespace vmech {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "vmech/base/linear_algebra/linear_algebra.h"
+#include "vmech/base/screw_algebra.h"
 #include "vmech/dynamics/reactions/reactions.h"
 #include "vmech/kinematics/loops/closure.h"
 #include "vmech/kinematics/loops/dimensionless_loops.h"
@@ -34,18 +35,11 @@ class LoadMarker {
   }
 
   void Mark(const VectorXd& direction, Certainty verdict, std::vector<JointCertainty>* result) {
-    for (NodeState<double>& node : ws_.nodes) node.F_Bo = {};
-    for (JointState<double>& joint : joints_) joint.W_M = {};
+    for (TreeWorkspace<double>::Node& node : ws_.nodes) node.F = {};
     const VectorXd mu = LoopRowScale(tree_).cwiseProduct(direction);
-    AddMultiplierWrenches(tree_, mu.data(), &ws_);
-    TreeJointWrenches(tree_, ws_, &joints_);
-    for (size_t l = 0; l < tree_.loops.size(); ++l) {
-      const Loop& loop = tree_.loops[l];
-      const Wrenchd W_F = WrenchOfMultipliers(loop, ws_.loops[l], mu.data() + loop.row);
-      joints_[loop.joint].W_M = {ws_.loops[l].R_WF * W_F.force, ws_.loops[l].R_WF * W_F.moment};
-    }
+    ApplyMultipliers(tree_, mu.data(), &ws_, &joints_);
     for (size_t j = 0; j < joints_.size(); ++j) {
-      Vector6d load = joints_[j].W_M.In(joints_[j].R_WF).Stacked();
+      Vector6d load = WrenchIn(joints_[j].F, joints_[j].W).Stacked();
       load.head<3>() *= tree_.length;
       for (int i = 0; i < 6; ++i) {
         if (std::abs(load[i]) > touches_) (*result)[j][i] = verdict;

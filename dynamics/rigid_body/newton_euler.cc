@@ -1,107 +1,211 @@
 #include "vmech/dynamics/rigid_body/newton_euler.h"
 
 #include "vmech/base/packet.h"
-#include "vmech/kinematics/tree/forward_kinematics.h"
-#include "vmech/kinematics/tree/jacobian.h"
+#include "vmech/base/screw_algebra.h"
 
 namespace vmech {
 namespace {
 
-/// Wrench about Bo that moves a node against its inertia and gravity.
 template <typename T>
-Wrench<T> InertiaWrench(const TreeNode& node, const NodeState<T>& s, const Vector3d& gravity_W) {
-  const Matrix3<T>& R = s.X_WB.R;
-  const Vector3<T> c = R * node.p_BoBcm.cast<T>();
-  const Vector3<T> a_cm = s.a + s.alpha.cross(c) + s.w.cross(s.w.cross(c));
-  const Vector3<T> f = node.mass * (a_cm - gravity_W.cast<T>());
-  const Vector3<T> w_B = R.transpose() * s.w;
-  const Vector3<T> alpha_B = R.transpose() * s.alpha;
-  const Matrix3<T> I = node.I_Bcm.cast<T>();
-  // Euler's equation in the node's own axes.
-  const Vector3<T> n_B = I * alpha_B + w_B.cross(I * w_B);
-  return {f, R * n_B + c.cross(f)};
+ScrewInertiaT<T> InertiaInWorld(const typename TreeInertias<T>::Body& body, const FrameT<T>& X) {
+  const Triple<T> c = PointInWorld(X, body.p_BoBcm), mc = body.mass * c;
+  // R I R', and the parallel axes: I + m (c'c - c c').
+  const FrameT<T> RI{Rotate(X, body.Ix), Rotate(X, body.Iy), Rotate(X, body.Iz), c};
+  const T square = Dot(c, mc), zero(0);
+  const auto column = [&](int k, const Triple<T>& diagonal) -> Triple<T> {
+    return (Rotate<T>(RI, X.x[k], X.y[k], X.z[k]) - c[k] * mc) + diagonal;
+  };
+  return {body.mass, mc, column(0, TripleOf<T>(square, zero, zero)),
+          column(1, TripleOf<T>(zero, square, zero)), column(2, TripleOf<T>(zero, zero, square))};
+}
+
+Screw MomentumOf(const TreeInertias<double>::Body& body, const Frame& X, const Screw& V) {
+  const Four c = PointInWorld(X, body.p_BoBcm), w_B = InverseRotate(X, V.angular);
+  const Four spin_B = w_B[0] * body.Ix + w_B[1] * body.Iy + w_B[2] * body.Iz;
+  return WrenchAt(c, body.mass * VelocityAt(c, V), Rotate(X, spin_B));
+}
+
+/// Adds to every F those of the node's children. Writes the generalised forces, unless null.
+template <typename T>
+void PropagateWrenches(const KinematicTree& tree, TreeWorkspace<T>* ws, T* tau) {
+  ws->nodes[0].F = {};
+  ScrewT<T> sum;  // what this node gets from the next, in registers: a chain need not wait for memory
+  for (int i = static_cast<int>(tree.nodes.size()); i-- > 0;) {
+    const TreeNode& node = tree.nodes[i];
+    sum += ws->at(i).F;
+    ws->at(i).F = sum;
+    for (int v = node.v; tau && v < node.v + VelocitiesOf(node.motion); ++v) {
+      tau[v] = Power(sum, ws->S[v]);
+    }
+    if (node.parent == i - 1) continue;
+    ws->at(node.parent).F += sum;
+    sum = {};
+  }
+  ws->nodes[0].F += sum;
+}
+
+/// Writes the composites.
+void AccumulateInertias(const KinematicTree& tree, TreeInertias<double>* inertias) {
+  ScrewInertia sum;  // in registers, as above
+  for (int i = static_cast<int>(tree.nodes.size()); i-- > 0;) {
+    sum += inertias->bodies[i + 1];
+    if (inertias->has_received[i + 1]) sum += inertias->received[i + 1];
+    inertias->has_received[i + 1] = false;
+    inertias->composites[i + 1] = sum;
+    const int parent = tree.nodes[i].parent;
+    if (parent == i - 1) continue;
+    ScrewInertia& received = inertias->received[parent + 1];
+    if (!inertias->has_received[parent + 1]) received = {};
+    inertias->has_received[parent + 1] = true;
+    received += sum;
+    sum = {};
+  }
 }
 
 }  // namespace
 
 template <typename T>
-void RecursiveNewtonEuler(const KinematicTree& tree, const Vector3d& gravity_W,
-                          const Wrench<T>* applied, TreeWorkspace<T>* ws) {
-  for (size_t i = 0; i < tree.nodes.size(); ++i) {
+TreeInertias<T>::TreeInertias(const KinematicTree& tree)
+    : in_node(tree.nodes.size() + 1),
+      bodies(in_node.size()),
+      composites(bodies),
+      received(bodies),
+      has_received(bodies.size()) {
+  const int n = tree.nv;
+  for (int i = 0; i < static_cast<int>(tree.nodes.size()); ++i) {
     const TreeNode& node = tree.nodes[i];
-    NodeState<T>& s = ws->nodes[i];
-    s.F_Bo = node.link >= 0 ? InertiaWrench(node, s, gravity_W) - applied[i] : -applied[i];
-  }
-  for (size_t i = tree.nodes.size(); i-- > 0;) {
-    const int parent = tree.nodes[i].parent;
-    if (parent < 0) continue;
-    const NodeState<T>& s = ws->nodes[i];
-    NodeState<T>& p = ws->nodes[parent];
-    p.F_Bo += s.F_Bo.ShiftedBy(s.X_WB.p - p.X_WB.p);
-  }
-}
-
-template <typename T>
-void GeneralisedForces(const KinematicTree& tree, const TreeWorkspace<T>& ws, T* tau) {
-  for (size_t i = 0; i < tree.nodes.size(); ++i) {
-    const TreeNode& node = tree.nodes[i];
-    if (node.v < 0) continue;
-    const Wrench<T>& F = ws.nodes[i].F_Bo;
-    const Vector3<T>& z = ws.nodes[i].X_WB.R.col(2);
-    switch (node.motion) {
-      case NodeMotion::kFixed:
-        break;
-      case NodeMotion::kRevolute:
-        tau[node.v] = z.dot(F.moment);
-        break;
-      case NodeMotion::kPrismatic:
-        tau[node.v] = z.dot(F.force);
-        break;
-      case NodeMotion::kScrew:
-        tau[node.v] = z.dot(F.moment) + node.pitch * z.dot(F.force);
-        break;
-      case NodeMotion::kSpherical:
-        for (int k = 0; k < 3; ++k) {
-          tau[node.v + k] = AxisInWorld(tree, ws, static_cast<int>(i), k).angular.dot(F.moment);
+    const Matrix3d& I = node.I_Bcm;
+    in_node[i + 1] = {T(node.mass), TripleOf<T>(node.p_BoBcm), TripleOf<T>(I.col(0)),
+                      TripleOf<T>(I.col(1)), TripleOf<T>(I.col(2))};
+    for (int v = node.v; v < node.v + VelocitiesOf(node.motion); ++v) {
+      const auto add = [&](int u) { entries.push_back({i + 1, v, u, v * n + u, u * n + v}); };
+      add(v);
+      for (int j = i; j >= 0; j = tree.nodes[j].parent) {
+        const TreeNode& below = tree.nodes[j];
+        for (int u = below.v; u < below.v + VelocitiesOf(below.motion); ++u) {
+          if (u < v) add(u);
         }
-        break;
+      }
     }
   }
 }
 
-MatrixXd MassMatrix(const KinematicTree& tree, const VectorXd& q) {
-  TreeWorkspace<double> ws(tree);
-  ForwardKinematics(tree, q.data(), &ws);
-  MatrixXd M = MatrixXd::Zero(tree.nv, tree.nv);
-  Matrix6Xd J(6, tree.nv);
+template <typename T>
+void SetGravity(const Vector3d& gravity_W, TreeWorkspace<T>* ws) noexcept {
+  ws->at(-1).A.linear = TripleOf<T>(-gravity_W);
+}
+
+template <typename T>
+void BodyInertias(const KinematicTree& tree, const TreeWorkspace<T>& ws,
+                  TreeInertias<T>* inertias) noexcept {
+  for (size_t i = 0; i < tree.nodes.size(); ++i) {
+    if (tree.nodes[i].link < 0) continue;
+    inertias->bodies[i + 1] = InertiaInWorld<T>(inertias->in_node[i + 1], ws.nodes[i + 1].X);
+  }
+}
+
+void CompositeMassMatrix(const KinematicTree& tree, const TreeWorkspace<double>& ws,
+                         TreeInertias<double>* inertias, MatrixXd* M) noexcept {
+  AccumulateInertias(tree, inertias);
+  double* const m = M->data();
+  Screw momentum;
+  for (const auto& [node, v, u, above, below] : inertias->entries) {
+    if (u == v) momentum = inertias->composites[node] * ws.S[v];  // the first of v's
+    m[above] = m[below] = Power(momentum, ws.S[u]);
+  }
+}
+
+template <typename T>
+void GyroscopicWrenches(const KinematicTree& tree, const TreeInertias<T>& inertias,
+                        TreeWorkspace<T>* ws) noexcept {
+  for (size_t i = 0; i < tree.nodes.size(); ++i) {
+    if (tree.nodes[i].link < 0) continue;
+    auto& s = ws->nodes[i + 1];
+    s.p = CarriedWrench(s.V, inertias.bodies[i + 1] * s.V);
+  }
+}
+
+template <typename T>
+void NewtonEuler(const KinematicTree& tree, const TreeInertias<T>& inertias,
+                 const ScrewT<T>* applied, TreeWorkspace<T>* ws, T* tau) noexcept {
+  for (size_t i = 0; i < tree.nodes.size(); ++i) {
+    auto& s = ws->nodes[i + 1];
+    s.F = tree.nodes[i].link < 0 ? ScrewT<T>{} : inertias.bodies[i + 1] * s.A + s.p;
+    if (applied) s.F -= applied[i];
+  }
+  PropagateWrenches(tree, ws, tau);
+}
+
+template <typename T>
+void GeneralisedForces(const KinematicTree& tree, const TreeWorkspace<T>& ws, T* tau) noexcept {
   for (size_t i = 0; i < tree.nodes.size(); ++i) {
     const TreeNode& node = tree.nodes[i];
-    if (node.link < 0) continue;
-    const Matrix3d& R = ws.nodes[i].X_WB.R;
-    PointJacobian(tree, ws, static_cast<int>(i), ws.nodes[i].X_WB * node.p_BoBcm, &J);
-    M += node.mass * J.topRows(3).transpose() * J.topRows(3) +
-         J.bottomRows(3).transpose() * (R * node.I_Bcm * R.transpose()) * J.bottomRows(3);
+    for (int v = node.v; v >= 0 && v < node.v + VelocitiesOf(node.motion); ++v) {
+      tau[v] = Power(ws.nodes[i + 1].F, ws.S[v]);
+    }
   }
+}
+
+void Momenta(const KinematicTree& tree, const TreeInertias<double>& inertias, const double* v,
+             TreeWorkspace<double>* ws, double* momenta) noexcept {
+  ForwardVelocities(tree, v, ws);
+  for (size_t i = 1; i < ws->nodes.size(); ++i) {
+    TreeWorkspace<double>::Node& s = ws->nodes[i];
+    s.F = MomentumOf(inertias.in_node[i], s.X, s.V);
+  }
+  PropagateWrenches(tree, ws, momenta);
+}
+
+double KineticEnergy(const KinematicTree& tree, const TreeInertias<double>& inertias,
+                     const TreeWorkspace<double>& ws) noexcept {
+  double energy = 0;
+  for (size_t i = 1; i <= tree.nodes.size(); ++i) {
+    energy += 0.5 * Power(inertias.bodies[i] * ws.nodes[i].V, ws.nodes[i].V);
+  }
+  return energy;
+}
+
+double WeightEnergy(const KinematicTree& tree, const TreeInertias<double>& inertias) noexcept {
+  Four moment{};
+  for (const ScrewInertia& body : inertias.bodies) moment += body.moment;
+  return -Dot(FourOf(tree.mechanism.gravity_W), moment);
+}
+
+MatrixXd MassMatrix(const KinematicTree& tree, const VectorXd& q) {
+  TreeWorkspace<double> ws(tree);
+  TreeInertias<double> inertias(tree);
+  MatrixXd M = MatrixXd::Zero(tree.nv, tree.nv);
+  ForwardKinematics(tree, q.data(), &ws);
+  BodyInertias(tree, ws, &inertias);
+  CompositeMassMatrix(tree, ws, &inertias, &M);
   return M;
 }
 
 VectorXd BiasForces(const KinematicTree& tree, const VectorXd& q, const VectorXd& v) {
   TreeWorkspace<double> ws(tree);
-  const std::vector<Wrenchd> nothing(tree.nodes.size());
+  TreeInertias<double> inertias(tree);
+  VectorXd h = VectorXd::Zero(tree.nv);
+  SetGravity(tree.mechanism.gravity_W, &ws);
   ForwardKinematics(tree, q.data(), &ws);
   ForwardVelocities(tree, v.data(), &ws);
-  ForwardAccelerations<double>(tree, v.data(), nullptr, &ws);
-  RecursiveNewtonEuler<double>(tree, tree.mechanism.gravity_W, nothing.data(), &ws);
-  VectorXd h = VectorXd::Zero(tree.nv);
-  GeneralisedForces(tree, ws, h.data());
+  VelocityProducts(tree, &ws);
+  BodyInertias(tree, ws, &inertias);
+  GyroscopicWrenches(tree, inertias, &ws);
+  NewtonEuler<double>(tree, inertias, nullptr, &ws, h.data());
   return h;
 }
 
 // NOLINTBEGIN(bugprone-macro-parentheses): T is a type
-#define VMECH_INSTANTIATE(T)                                                                     \
-  template void RecursiveNewtonEuler<T>(const KinematicTree&, const Vector3d&, const Wrench<T>*, \
-                                        TreeWorkspace<T>*);                                      \
-  template void GeneralisedForces<T>(const KinematicTree&, const TreeWorkspace<T>&, T*);
+#define VMECH_INSTANTIATE(T)                                                                    \
+  template struct TreeInertias<T>;                                                              \
+  template void SetGravity<T>(const Vector3d&, TreeWorkspace<T>*) noexcept;                     \
+  template void BodyInertias<T>(const KinematicTree&, const TreeWorkspace<T>&,                  \
+                                TreeInertias<T>*) noexcept;                                     \
+  template void GyroscopicWrenches<T>(const KinematicTree&, const TreeInertias<T>&,             \
+                                      TreeWorkspace<T>*) noexcept;                              \
+  template void NewtonEuler<T>(const KinematicTree&, const TreeInertias<T>&, const ScrewT<T>*,  \
+                               TreeWorkspace<T>*, T*) noexcept;                                 \
+  template void GeneralisedForces<T>(const KinematicTree&, const TreeWorkspace<T>&, T*) noexcept;
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Packet)
 #undef VMECH_INSTANTIATE

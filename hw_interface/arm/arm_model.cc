@@ -37,6 +37,8 @@ ArmModel::ArmModel(std::shared_ptr<const ArmDescription> arm)
       rest_(VectorXd::Zero(joints())),
       acceleration_(VectorXd::Zero(joints())),
       factor_(MatrixXd::Identity(joints(), joints())) {  // one not computed yet cannot be copied
+  ws_.reference.setZero();
+  ws_.at(-1).X = {};
   SetGravity(arm_->tree.mechanism.gravity_W, &ws_);
   SetPosture(arm_->posture.data());
 }
@@ -50,8 +52,9 @@ Posed ArmModel::X_DH() const noexcept {
 }
 
 const Matrix6Xd& ArmModel::J() noexcept {
-  PointJacobian(arm_->tree, ws_, arm_->handle_node, FourOf(X_DH().p), &columns_);
-  FillMatrix(columns_, &J_);
+  const Frame H = ws_.at(arm_->handle_node).X * arm_->X_BH;
+  GraspJacobian(arm_->tree, ws_, arm_->handle_node, H, &columns_);
+  for (int i = 0; i < joints(); ++i) J_.col(i) = Vector6Of(columns_[i]);
   return J_;
 }
 
@@ -68,7 +71,7 @@ void ArmModel::BiasForces(const VectorXd& v, const Wrenchd& F_Ho) noexcept {
   VelocityProducts(tree, &ws_);
   BodyInertias(tree, ws_, &inertias_);
   GyroscopicWrenches(tree, inertias_, &ws_);
-  NewtonEuler(tree, inertias_, &ws_, bias_.data());
+  NewtonEuler<double>(tree, inertias_, nullptr, &ws_, bias_.data());
   const Screw F_Do = WrenchAtBase(F_Ho.Stacked());
   for (int i = 0; i < joints(); ++i) bias_[i] -= Power(F_Do, ws_.S[i]);
 }

@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "vmech/dynamics/rigid_body/screw_dynamics.h"
-#include "vmech/kinematics/tree/jacobian.h"
+#include "vmech/dynamics/rigid_body/newton_euler.h"
+#include "vmech/kinematics/tree/forward_kinematics.h"
 #include "vmech/kinematics/tree/kinematic_tree.h"
 
 namespace vmech {
@@ -66,8 +66,8 @@ class ArmModel {
   void BiasForces(const VectorXd& v, const Wrenchd& F_Ho) noexcept;
 
   std::shared_ptr<const ArmDescription> arm_;
-  ScrewWorkspace ws_;
-  ScrewInertias inertias_;
+  TreeWorkspace<double> ws_;  // about Do
+  TreeInertias<double> inertias_;
   std::vector<Screw> columns_;  // of J
   Matrix6Xd J_;
   MatrixXd M_;

@@ -15,7 +15,7 @@ struct InverseOfColumns {
       : rows{Cross(a1, a2), Cross(a2, a0), Cross(a0, a1)}, scale(1 / Dot(rows.x, a0)) {}
   Four operator*(const Four& a) const { return scale * InverseRotate(rows, a); }
 
-  Axes rows;
+  Frame rows;
   double scale;
 };
 

@@ -71,7 +71,7 @@ HandObserver::HandObserver(const HandObserverOptions& options, const DeviceInfo&
 }
 
 void HandObserver::Update(const MasterState& state, const Vector6d& F_Ho_D, int periods) noexcept {
-  const Axes X = AxesOf(state.X_DH);
+  const Frame X = FrameOf(state.X_DH);
   if (!started_) {
     displacement_ = x_ = v_ = d_ = differences_ = {};
     X_last_ = X;

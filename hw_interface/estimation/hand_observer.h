@@ -66,7 +66,7 @@ class HandObserver {
   double trust_ = 1;
   Screw resolution_;  // the filter's pose is never further off than this
   bool started_ = false;
-  Axes X_last_;
+  Frame X_last_;
   Screw displacement_;  // measured since the start, rotations summed up
   Screw x_, v_, d_;
   Screw differences_;

@@ -197,7 +197,7 @@ void CoupledTick::ReadHand(const TickInput& input) noexcept {
     has_hand_ = true;
     return;
   }
-  const Axes X = AxesOf(input.X_WH);
+  const Frame X = FrameOf(input.X_WH);
   if (has_hand_) {
     const double elapsed = std::max(input.elapsed, period_);
     const double share = options_.smoothing > 0 ? 1 - std::exp(-elapsed / options_.smoothing) : 1;

@@ -11,7 +11,6 @@
 #include "vmech/dynamics/rigid_body/newton_euler.h"
 #include "vmech/kinematics/loops/loops.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
-#include "vmech/kinematics/tree/jacobian.h"
 
 namespace vmech {
 namespace {
@@ -117,7 +116,7 @@ double InertiaRatio(const KinematicTree& tree, const GraspFrame& grasp, const Ve
   }
   if (device.linear.mass == 0) return 0;
   Matrix6Xd J(6, tree.nv);
-  PointJacobian(tree, ws, grasp.node, PoseInWorld(ws, grasp.node, grasp.X_BG).p, &J);
+  GraspJacobian(tree, ws, grasp.node, grasp.X_BG, &J);
   // The handle's masses move the mechanism by D^1/2 J N (N'MN)^-1 N'J' D^1/2: eigenvalues 1/lambda.
   const MatrixXd JN = HandleMasses(grasp, device).cwiseSqrt().asDiagonal() * J * N;
   MatrixXd M = N.transpose() * MassMatrix(tree, q) * N;

@@ -5,14 +5,14 @@
 namespace vmech {
 
 Posed Registration::HandInWorld(const Posed& X_DH) const noexcept {
-  const Axes X_WK = AxesOf(X_WD) * AxesOf(X_DH);
-  return PoseOf(Turned(X_WK, R_HK, X_WK.p));
+  const Frame X_WK = FrameOf(X_WD) * FrameOf(X_DH);
+  return PoseOf(Rotate(X_WK, R_HK, X_WK.p));
 }
 
 void Registration::TakeHandInWorld(const MovingFrame& handle, MovingFrame* hand) const noexcept {
-  const Axes D = AxesOf(X_WD), X_WK = D * handle.X;
-  hand->X = Turned(X_WK, R_HK, X_WK.p);
-  hand->V = {Turned(D, handle.V.linear), Turned(D, handle.V.angular)};
+  const Frame D = FrameOf(X_WD), X_WK = D * handle.X;
+  hand->X = Rotate(X_WK, R_HK, X_WK.p);
+  hand->V = {Rotate(D, handle.V.linear), Rotate(D, handle.V.angular)};
 }
 
 Registration GraspedAt(const Matrix3d& R_WD, const Posed& X_DH, const Posed& X_WG) noexcept {

@@ -19,7 +19,7 @@ bool IsFinite(const Four& a) {
 }
 
 bool IsFinite(const Posed& X_DH) {
-  const Axes X = AxesOf(X_DH);
+  const Frame X = FrameOf(X_DH);
   return IsFinite(X.x + X.y + X.z + X.p);
 }
 
@@ -141,7 +141,7 @@ void SafetyFilter::Observe(const SafetyInput& input) noexcept {
   const MasterState& state = *input.state;
   if (!open_) has_pose_ = false;
   if (has_pose_ && state.sequence == last_sequence_) return;
-  const Axes X = AxesOf(state.X_DH);
+  const Frame X = FrameOf(state.X_DH);
   if (has_pose_) {
     const Screw dX = HandError(X_last_, X);
     const double elapsed = static_cast<double>(state.sequence - last_sequence_) * period_;

@@ -136,7 +136,7 @@ class SafetyFilter {
   int missing_ = 0;        // samples in a row
   double opened_for_ = 0;  // [s]
   std::uint64_t last_sequence_ = 0;
-  Axes X_last_;
+  Frame X_last_;
   Screw smooth_V_;                              // for the trip
   Screw last_;                                  // the last wrench that went out
   std::array<Screw, kMemory> sent_, withheld_;  // by sequence

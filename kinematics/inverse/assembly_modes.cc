@@ -8,6 +8,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "vmech/base/screw_algebra.h"
 #include "vmech/base/linear_algebra/linear_algebra.h"
 #include "vmech/kinematics/loops/dimensionless_loops.h"
 #include "vmech/kinematics/loops/loops.h"
@@ -289,8 +290,9 @@ class ModeSearch {
       for (int link : links_) {
         const int node = tree_.NodeOfLink(link);
         if (node < 0) continue;
-        const NodeState<double>& s = ws.nodes[node];
-        if (s.v.norm() / tree_.length + s.w.norm() > kMoves) return false;
+        const Screw& V = ws.at(node).V;
+        const Four v = VelocityAt(ws.at(node).X.p, V);
+        if (Length(v) / tree_.length + Length(V.angular) > kMoves) return false;
       }
     }
     return true;

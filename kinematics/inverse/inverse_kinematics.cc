@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "vmech/base/screw_algebra.h"
 #include "vmech/kinematics/loops/loop_derivatives.h"
 #include "vmech/kinematics/loops/loops.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
@@ -60,12 +61,6 @@ int VelocitiesOf(const TreeNode& node) {
 }
 
 }  // namespace
-
-GraspFrame GraspFrameOf(const KinematicTree& tree, int grasp) {
-  RequireIndex("GraspFrameOf: grasp", grasp, tree.mechanism.grasps.size());
-  const Grasp& g = tree.mechanism.grasps[grasp];
-  return {tree.NodeOfLink(g.link), tree.X_node_link(g.link) * g.X_LG, g.kind};
-}
 
 void InverseKinematicsOptions::Validate() const {
   for (int i = 0; i < 6; ++i) {
@@ -130,12 +125,12 @@ void InverseKinematics::MoveTo(const VectorXd& q) {
 }
 
 void InverseKinematics::EvaluateGrasp(VectorXd* r, MatrixXd* J) {
-  const Posed X_WG = PoseInWorld(ws_, grasp_.node, grasp_.X_BG);
+  const Frame G = ws_.at(grasp_.node).X * grasp_.X_BG;
   const bool rigid = grasp_.kind == GraspKind::kRigid;
   Matrix3d A;
-  if (r) r->head<3>() = root_.head<3>().cwiseProduct(X_WH_.p - X_WG.p);
+  if (r) r->head<3>() = root_.head<3>().cwiseProduct(TargetPosition() - Vector3Of(G.p));
   if (rigid) {
-    const Matrix3d R_E = X_WH_.R * X_WG.R.transpose();
+    const Matrix3d R_E = X_WH_.R * RotationOf(G).transpose();
     const Vector3d e = RotationErrorOf(rotation_error_, R_E);
     if (r) r->tail<3>() = root_.tail<3>().cwiseProduct(e);
     if (J) A = root_.tail<3>().asDiagonal() * RotationErrorJacobian(rotation_error_, R_E, e);
@@ -143,10 +138,9 @@ void InverseKinematics::EvaluateGrasp(VectorXd* r, MatrixXd* J) {
   if (!J) return;
   J->setZero();
   for (const ChainVelocity& c : grasp_chain_) {
-    const JointAxis<double> axis = AxisInWorld(tree_, ws_, c.node, c.axis);
-    const Vector3d linear = axis.linear + axis.angular.cross(X_WG.p - ws_.nodes[c.node].X_WB.p);
-    J->col(c.v).head<3>() = -root_.head<3>().cwiseProduct(linear);
-    if (rigid) J->col(c.v).tail<3>() = A * axis.angular;
+    const Screw& S = ws_.S[c.v];
+    J->col(c.v).head<3>() = -root_.head<3>().cwiseProduct(Vector3Of(VelocityAt(G.p, S)));
+    if (rigid) J->col(c.v).tail<3>() = A * Vector3Of(S.angular);
   }
 }
 
@@ -154,19 +148,23 @@ void InverseKinematics::EvaluateLoops(VectorXd* c, MatrixXd* C) {
   if (C) C->setZero();
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
     const Loop& loop = tree_.loops[l];
-    const LoopState<double>& s = ws_.loops[l];
-    const auto scale = row_scale_.segment(loop.row, loop.rows);
-    if (c) c->segment(loop.row, loop.rows) = scale.cwiseProduct(s.e2.head(loop.rows));
+    LoopState<double>& s = ws_.loops[l];
+    const double* scale = row_scale_.data() + loop.row;
+    for (int k = 0; c && k < loop.rows; ++k) (*c)[loop.row + k] = scale[k] * s.e2[k];
     if (!C) continue;
-    const Matrix3d D_W = LoopRotationJacobian(loop, s) * s.R_WF.transpose();
-    for (const LoopColumn& k : loop.columns) {
-      const JointAxis<double> axis = AxisInWorld(tree_, ws_, k.node, k.axis);
-      const Vector3d linear = axis.linear + axis.angular.cross(s.p_WM - ws_.nodes[k.node].X_WB.p);
-      const Vector6d column = ProjectOnRows<double>(
-          loop, s, -k.sign * (s.R_WF.transpose() * linear), -k.sign * (D_W * axis.angular));
-      for (int i = 0; i < loop.rows; ++i) (*C)(loop.row + i, k.v) = scale[i] * column[i];
+    FindLoopWrenches(loop, Rotate(s.F, Matrix3d(LoopRotationJacobian(loop, s).transpose()), s.F.p), &s);
+    for (const LoopColumn& column : loop.columns) {
+      const Screw S = -column.sign * ws_.S[column.v];
+      for (int k = 0; k < loop.rows; ++k) {
+        (*C)(loop.row + k, column.v) = scale[k] * Power(s.wrench[k], S);
+      }
     }
   }
+}
+
+/// That of the hand about the tree's reference point.
+Vector3d InverseKinematics::TargetPosition() const {
+  return X_WH_.p - ws_.reference;
 }
 
 void InverseKinematics::Plus(const VectorXd& q, const VectorXd& dq, VectorXd* q_plus) const {
@@ -182,20 +180,20 @@ void InverseKinematics::Curvature(const VectorXd& q, const VectorXd& mu, MatrixX
 }
 
 void InverseKinematics::AddGraspCurvature(MatrixXd* S) {
-  const Posed X_WG = PoseInWorld(ws_, grasp_.node, grasp_.X_BG);
+  const Frame G = ws_.at(grasp_.node).X * grasp_.X_BG;
   // r_i d2r_i = (K/E e1)_i d2e1_i, and e1 falls as G moves.
   CurvatureWeights weights;
-  weights.f = -(K_ / energy_).head<3>().cwiseProduct(X_WH_.p - X_WG.p);
+  weights.f = -(K_ / energy_).head<3>().cwiseProduct(TargetPosition() - Vector3Of(G.p));
   weights.g.setZero();
   weights.G.setZero();
   if (grasp_.kind == GraspKind::kRigid) {
-    const Matrix3d R_E = X_WH_.R * X_WG.R.transpose();
+    const Matrix3d R_E = X_WH_.R * RotationOf(G).transpose();
     const Vector3d e = RotationErrorOf(rotation_error_, R_E);
     const Vector3d pull = (K_ / energy_).tail<3>().cwiseProduct(e);
     weights.g = RotationErrorJacobian(rotation_error_, R_E, e).transpose() * pull;
     weights.G = RotationErrorCurvature(rotation_error_, R_E, e, pull);
   }
-  UnitTwists(grasp_chain_, Matrix3d::Identity(), X_WG.p);
+  UnitTwists(grasp_chain_, {.p = G.p});
   AddChainCurvature(grasp_chain_, weights, S);
 }
 
@@ -207,20 +205,19 @@ void InverseKinematics::AddLoopCurvature(int l, const VectorXd& mu, MatrixXd* S)
   w.head(loop.rows) =
       -mu.segment(loop.row, loop.rows).cwiseProduct(row_scale_.segment(loop.row, loop.rows));
   const Wrenchd wrench = WrenchOfMultipliers(loop, s, w.data());
-  UnitTwists(loop_chains_[l], s.R_WF, s.p_WM);
+  UnitTwists(loop_chains_[l], s.F);
   AddChainCurvature(loop_chains_[l],
                     {wrench.force, LoopRotationJacobian(loop, s).transpose() * wrench.moment,
                      LoopRotationCurvature(loop, s, w.data())},
                     S);
 }
 
-void InverseKinematics::UnitTwists(const Chain& chain, const Matrix3d& R_WF, const Vector3d& p_WQ) {
+/// About the origin and in the axes of X.
+void InverseKinematics::UnitTwists(const Chain& chain, const Frame& X) {
   for (size_t i = 0; i < chain.size(); ++i) {
-    const ChainVelocity& c = chain[i];
-    const JointAxis<double> axis = AxisInWorld(tree_, ws_, c.node, c.axis);
-    const Vector3d linear = axis.linear + axis.angular.cross(p_WQ - ws_.nodes[c.node].X_WB.p);
-    angular_[i] = c.sign * (R_WF.transpose() * axis.angular);
-    linear_[i] = c.sign * (R_WF.transpose() * linear);
+    const Screw S = chain[i].sign * ws_.S[chain[i].v];
+    angular_[i] = Vector3Of(InverseRotate(X, S.angular));
+    linear_[i] = Vector3Of(InverseRotate(X, VelocityAt(X.p, S)));
   }
 }
 

@@ -3,21 +3,11 @@
 #include <vector>
 
 #include "vmech/base/rotation_error.h"
-#include "vmech/kinematics/tree/kinematic_tree.h"
+#include "vmech/kinematics/tree/grasp_frame.h"
 #include "vmech/kinematics/tree/tree_workspace.h"
 #include "vmech/solvers/constrained_least_squares.h"
 
 namespace vmech {
-
-/// Where a hand holds a mechanism.
-struct GraspFrame {
-  int node = -1;                       ///< of the tree, that carries G; -1 is the ground
-  Posed X_BG;                          ///< G in the node
-  GraspKind kind = GraspKind::kRigid;  ///< kPoint: the three positional rows of e1 only
-};
-
-/// A grasp of the mechanism by its index.
-GraspFrame GraspFrameOf(const KinematicTree& tree, int grasp);
 
 struct InverseKinematicsOptions {
   RotationError rotation_error = RotationError::kLogarithm;
@@ -104,7 +94,8 @@ class InverseKinematics final : public ConstrainedLeastSquares {
   void AddGraspCurvature(MatrixXd* S);
   void AddLoopCurvature(int loop, const VectorXd& mu, MatrixXd* S);
   void AddChainCurvature(const Chain& chain, const CurvatureWeights& weights, MatrixXd* S) const;
-  void UnitTwists(const Chain& chain, const Matrix3d& R_WF, const Vector3d& p_WQ);
+  void UnitTwists(const Chain& chain, const Frame& X);
+  Vector3d TargetPosition() const;
 
   const KinematicTree& tree_;
   GraspFrame grasp_;

@@ -56,6 +56,7 @@ class Splitter {
     for (const int node : cluster.nodes) AddNode(node, &cluster);
     for (const int loop : loops) AddLoop(whole_.loops[loop], &cluster);
     for (const int node : cluster.nodes) local_[node] = -1;
+    cluster.tree.reference = CentroidOfGround(cluster.tree);
     return cluster;
   }
 
@@ -80,7 +81,7 @@ class Splitter {
     node.joint = node.link = -1;
     Renumber(VelocitiesOf(node.motion), &node.v, &cluster->v, &tree.nv);
     const bool turns = node.motion == NodeMotion::kRevolute || node.motion == NodeMotion::kScrew;
-    if (turns) tree.turning.push_back(tree.nq);
+    if (turns) tree.revolute_coordinates.push_back(tree.nq);
     Renumber(CoordinatesOf(node.motion), &node.q, &cluster->q, &tree.nq);
     tree.nodes.push_back(node);
   }

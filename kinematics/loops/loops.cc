@@ -4,8 +4,7 @@
 #include <numbers>
 
 #include "vmech/base/packet.h"
-#include "vmech/kinematics/tree/forward_kinematics.h"
-#include "vmech/kinematics/tree/jacobian.h"
+#include "vmech/base/screw_algebra.h"
 
 namespace vmech {
 namespace {
@@ -79,19 +78,21 @@ Vector3<T> RotationVector(const Matrix3<T>& R) {
   return turn;
 }
 
-/// Velocity, angular velocity and acceleration of a point Q of the world that moves with a node.
 template <typename T>
-struct PointMotion {
-  Vector3<T> w, v, alpha, a;
-};
+ScrewT<T> ForceAlong(const Triple<T>& axis, const Triple<T>& p_WM) {
+  return {axis, Cross(p_WM, axis)};
+}
 
 template <typename T>
-PointMotion<T> MotionAt(const TreeWorkspace<T>& ws, int node, const Vector3<T>& p_WQ) {
-  const Vector3<T> zero = Vector3<T>::Zero();
-  if (node < 0) return {zero, zero, zero, zero};
-  const NodeState<T>& s = ws.nodes[node];
-  const Vector3<T> r = p_WQ - s.X_WB.p;
-  return {s.w, s.v + s.w.cross(r), s.alpha, s.a + s.alpha.cross(r) + s.w.cross(s.w.cross(r))};
+ScrewT<T> MomentAbout(const Triple<T>& axis) {
+  return {ZeroTriple<T>(), axis};
+}
+
+/// Twist of M in F, axes of F, about the origin of M.
+template <typename T>
+Vector6<T> TwistInJoint(const LoopState<T>& s, const ScrewT<T>& V_rel) {
+  const Triple<T> linear = VelocityAt(s.F.p, V_rel);
+  return Vector6Of(ScrewT<T>{InverseRotate(s.F, linear), InverseRotate(s.F, V_rel.angular)});
 }
 
 }  // namespace
@@ -101,6 +102,7 @@ void LoopError(const Loop& loop, const Matrix3<T>& R_FM, const Vector3<T>& p_FM,
                LoopState<T>* state) {
   LoopState<T>& s = *state;
   s.R_FM = R_FM;
+  s.p_FM = p_FM;
   const Vector3<T> y_M = R_FM.col(1);
   s.n_F = y_M.cross(Vector3<T>::UnitX());
   // e2 = C dq moves M back to where it belongs in F.
@@ -116,56 +118,141 @@ void LoopErrors(const KinematicTree& tree, TreeWorkspace<T>* ws) {
   for (size_t l = 0; l < tree.loops.size(); ++l) {
     const Loop& loop = tree.loops[l];
     const JointPlacement& place = tree.placements[loop.joint];
+    const typename TreeWorkspace<T>::Placement& anchors = ws->placements[loop.joint];
     LoopState<T>& s = ws->loops[l];
-    const Pose<T> X_WF = PoseInWorld(*ws, place.first_node, place.X_AF);
-    const Pose<T> X_WM = PoseInWorld(*ws, place.second_node, place.X_BM);
-    s.R_WF = X_WF.R;
-    s.p_WM = X_WM.p;
-    s.p_FM_W = X_WM.p - X_WF.p;
-    LoopError<T>(loop, X_WF.R.transpose() * X_WM.R, X_WF.R.transpose() * s.p_FM_W, &s);
+    s.F = ws->at(place.first_node).X * anchors.X_AF;
+    const FrameT<T> M = ws->at(place.second_node).X * anchors.X_BM;
+    const Triple<T> p_FM = InverseRotate(s.F, M.p - s.F.p);
+    const FrameT<T> R_FM{InverseRotate(s.F, M.x), InverseRotate(s.F, M.y),
+                         InverseRotate(s.F, M.z)};
+    LoopError<T>(loop, RotationOf(R_FM), Vector3Of(p_FM), &s);
+    s.F.p = M.p;
+  }
+}
+
+template <typename T>
+void FindLoopWrenches(const Loop& loop, const FrameT<T>& turns, LoopState<T>* s) {
+  const FrameT<T>& F = s->F;
+  ScrewT<T>* row = s->wrench;
+  const auto forces = [&](auto... axes) { ((*row++ = ForceAlong<T>(axes, F.p)), ...); };
+  const auto moments = [&](auto... axes) { ((*row++ = MomentAbout<T>(axes)), ...); };
+  switch (loop.type) {
+    case JointType::kRevolute:
+      forces(F.x, F.y, F.z);
+      return moments(turns.x, turns.y);
+    case JointType::kPrismatic:
+      forces(F.x, F.y);
+      return moments(turns.x, turns.y, turns.z);
+    case JointType::kCylindrical:
+      forces(F.x, F.y);
+      return moments(turns.x, turns.y);
+    case JointType::kScrew:
+      forces(F.x, F.y);
+      moments(turns.x, turns.y);
+      *row = ForceAlong<T>(F.z, F.p) - loop.pitch * MomentAbout<T>(turns.z);
+      return;
+    case JointType::kUniversal:
+      forces(F.x, F.y, F.z);
+      return moments(Rotate(F, s->n_F[0], s->n_F[1], s->n_F[2]));
+    case JointType::kSpherical:
+      return forces(F.x, F.y, F.z);
+    case JointType::kPlanar:
+      forces(F.z);
+      return moments(turns.x, turns.y);
+    case JointType::kWeld:
+      forces(F.x, F.y, F.z);
+      return moments(turns.x, turns.y, turns.z);
+  }
+}
+
+template <typename T>
+void LoopWrenches(const KinematicTree& tree, const double* row_scale, TreeWorkspace<T>* ws) {
+  for (size_t l = 0; l < tree.loops.size(); ++l) {
+    const Loop& loop = tree.loops[l];
+    LoopState<T>& s = ws->loops[l];
+    FindLoopWrenches<T>(loop, s.F, &s);
+    for (int k = 0; row_scale && k < loop.rows; ++k) {
+      s.wrench[k] = row_scale[loop.row + k] * s.wrench[k];
+    }
   }
 }
 
 template <typename T>
 void LoopJacobian(const KinematicTree& tree, TreeWorkspace<T>* ws) {
+  LoopWrenches<T>(tree, nullptr, ws);
   for (size_t l = 0; l < tree.loops.size(); ++l) {
     const Loop& loop = tree.loops[l];
     const LoopState<T>& s = ws->loops[l];
     Vector6<T>* column = &ws->loop_columns[ws->first_column[l]];
     for (const LoopColumn& c : loop.columns) {
-      const Vector6<T> V = UnitTwistAt(tree, *ws, c.node, c.axis, s.p_WM);
-      *column++ = ProjectOnRows<T>(loop, s, c.sign * (s.R_WF.transpose() * V.template head<3>()),
-                                   c.sign * (s.R_WF.transpose() * V.template tail<3>()));
+      const ScrewT<T> S = c.sign * ws->S[c.v];
+      for (int k = 0; k < loop.rows; ++k) (*column)[k] = Power(s.wrench[k], S);
+      ++column;
     }
+  }
+}
+
+template <typename T>
+void LoopBias(const KinematicTree& tree, const TreeWorkspace<T>& ws, int loop_index, double s,
+              T* bias) {
+  const Loop& loop = tree.loops[loop_index];
+  const LoopState<T>& state = ws.loops[loop_index];
+  const JointPlacement& place = tree.placements[loop.joint];
+  const auto &A = ws.at(place.first_node), &B = ws.at(place.second_node);
+  // The rate of M's twist in F as an observer on F sees it.
+  const ScrewT<T> V_rel = B.V - A.V;
+  const ScrewT<T> rate = s * (B.A - A.A - CarriedTwist(A.V, V_rel));
+  for (int k = 0; k < loop.rows; ++k) bias[k] = Power(state.wrench[k], rate);
+  if (loop.type == JointType::kUniversal) {
+    // n = y_M x x_F turns in F.
+    const Vector3<T> y = state.R_FM.col(1);
+    const Triple<T> y_M = Rotate(state.F, y[0], y[1], y[2]);
+    bias[3] += s * Dot(Cross(Cross(V_rel.angular, y_M), state.F.x), V_rel.angular);
   }
 }
 
 template <typename T>
 void LoopAccelerationBias(const KinematicTree& tree, TreeWorkspace<T>* ws) {
   for (size_t l = 0; l < tree.loops.size(); ++l) {
-    const Loop& loop = tree.loops[l];
-    const JointPlacement& place = tree.placements[loop.joint];
-    LoopState<T>& s = ws->loops[l];
-    const PointMotion<T> A = MotionAt(*ws, place.first_node, s.p_WM);
-    const PointMotion<T> B = MotionAt(*ws, place.second_node, s.p_WM);
-    // Second derivatives as an observer on F sees them.
-    const Vector3<T> w_rel = B.w - A.w;
-    const Vector3<T> linear = B.a - A.a - 2.0 * A.w.cross(B.v - A.v);
-    const Vector3<T> angular = B.alpha - A.alpha - A.w.cross(w_rel);
-    s.bias = ProjectOnRows<T>(loop, s, s.R_WF.transpose() * linear, s.R_WF.transpose() * angular);
-    if (loop.type == JointType::kUniversal) {
-      // n = y_M x x_F turns in F.
-      const Vector3<T> w_F = s.R_WF.transpose() * w_rel;
-      s.bias[3] += w_F.cross(s.R_FM.col(1)).cross(Vector3<T>::UnitX()).dot(w_F);
-    }
+    LoopBias(tree, *ws, static_cast<int>(l), 1, ws->loops[l].bias.data());
   }
+}
+
+template <typename T>
+ScrewT<T> LoopWrench(const Loop& loop, const LoopState<T>& state, const T* mu) {
+  ScrewT<T> W;
+  for (int k = 0; k < loop.rows; ++k) W += mu[k] * state.wrench[k];
+  return W;
+}
+
+Wrenchd WrenchOfMultipliers(const Loop& loop, const LoopState<double>& state, const double* mu) {
+  constexpr double zero = 0;
+  switch (loop.type) {
+    case JointType::kRevolute:
+      return {{mu[0], mu[1], mu[2]}, {mu[3], mu[4], zero}};
+    case JointType::kPrismatic:
+      return {{mu[0], mu[1], zero}, {mu[2], mu[3], mu[4]}};
+    case JointType::kCylindrical:
+      return {{mu[0], mu[1], zero}, {mu[2], mu[3], zero}};
+    case JointType::kScrew:
+      return {{mu[0], mu[1], mu[4]}, {mu[2], mu[3], -loop.pitch * mu[4]}};
+    case JointType::kUniversal:
+      return {{mu[0], mu[1], mu[2]}, state.n_F * mu[3]};
+    case JointType::kSpherical:
+      return {{mu[0], mu[1], mu[2]}, {zero, zero, zero}};
+    case JointType::kPlanar:
+      return {{zero, zero, mu[0]}, {mu[1], mu[2], zero}};
+    case JointType::kWeld:
+      return {{mu[0], mu[1], mu[2]}, {mu[3], mu[4], mu[5]}};
+  }
+  return {};
 }
 
 template <typename T>
 Vector3<T> CutJointCoordinates(const Loop& loop, const LoopState<T>& state) {
   using std::atan2;
   const Matrix3<T>& R = state.R_FM;
-  const Vector3<T> p = state.R_WF.transpose() * state.p_FM_W;
+  const Vector3<T>& p = state.p_FM;
   const T zero(0);
   switch (loop.type) {
     case JointType::kRevolute:
@@ -225,10 +312,8 @@ Vector3<T> CutJointRates(const KinematicTree& tree, const TreeWorkspace<T>& ws, 
   const Loop& loop = tree.loops[loop_index];
   const LoopState<T>& s = ws.loops[loop_index];
   const JointPlacement& place = tree.placements[loop.joint];
-  const Vector6<T> V_W =
-      PointTwist(ws, place.second_node, s.p_WM) - PointTwist(ws, place.first_node, s.p_WM);
-  Vector6<T> V_FM;
-  V_FM << s.R_WF.transpose() * V_W.template head<3>(), s.R_WF.transpose() * V_W.template tail<3>();
+  const Vector6<T> V_FM =
+      TwistInJoint<T>(s, ws.at(place.second_node).V - ws.at(place.first_node).V);
   const CutJointFreedoms<T> freedoms = FreedomsOfCutJoint(loop, s);
   Vector3<T> rates = Vector3<T>::Zero();
   for (int i = 0; i < freedoms.count; ++i) {
@@ -289,7 +374,11 @@ T LargestLoopError(const KinematicTree& tree, const TreeWorkspace<T>& ws) {
   template void LoopError<T>(const Loop&, const Matrix3<T>&, const Vector3<T>&, LoopState<T>*); \
   template void LoopErrors<T>(const KinematicTree&, TreeWorkspace<T>*);                         \
   template void LoopJacobian<T>(const KinematicTree&, TreeWorkspace<T>*);                       \
+  template void FindLoopWrenches<T>(const Loop&, const FrameT<T>&, LoopState<T>*);              \
+  template void LoopWrenches<T>(const KinematicTree&, const double*, TreeWorkspace<T>*);        \
+  template void LoopBias<T>(const KinematicTree&, const TreeWorkspace<T>&, int, double, T*);    \
   template void LoopAccelerationBias<T>(const KinematicTree&, TreeWorkspace<T>*);               \
+  template ScrewT<T> LoopWrench<T>(const Loop&, const LoopState<T>&, const T*);                 \
   template Vector3<T> CutJointCoordinates<T>(const Loop&, const LoopState<T>&);                 \
   template CutJointFreedoms<T> FreedomsOfCutJoint<T>(const Loop&, const LoopState<T>&);         \
   template Vector3<T> CutJointRates<T>(const KinematicTree&, const TreeWorkspace<T>&, int);     \

@@ -17,35 +17,51 @@ namespace vmech {
 /// turns about z, it is the turn that brings z_M back onto z_F. Unlike the paper's sine (eq. 6) it
 /// grows up to half a turn, so that a loop assembled upside down does not pass for closed.
 
-/// Needs X_WB; writes everything in LoopState but `bias`.
+/// Needs X; writes everything in LoopState but `bias` and `wrench`.
 template <typename T>
 void LoopErrors(const KinematicTree& tree, TreeWorkspace<T>* ws);
 
-/// The same of one loop, from where M is in F; writes R_FM, n_F and e2.
+/// The same of one loop, from where M is in F; writes R_FM, p_FM, n_F and e2.
 template <typename T>
 void LoopError(const Loop& loop, const Matrix3<T>& R_FM, const Vector3<T>& p_FM,
                LoopState<T>* state);
 
-/// C = -d e2 / dv at a closed loop (paper eq. 4: e2 = C dq). Needs LoopErrors; writes loop_columns.
+/// The rows of C as wrenches, LoopState::wrench: C_kv = +-wrench[k] . S_v for the velocities around
+/// the loop, and a multiplier mu_k puts mu_k wrench[k] on the second link. `row_scale` [tree.rows]
+/// multiplies them; null: as they are. Needs LoopErrors.
+template <typename T>
+void LoopWrenches(const KinematicTree& tree, const double* row_scale, TreeWorkspace<T>* ws);
+
+/// The same of one loop; its rotations are those about x, y, z of `turns`.
+template <typename T>
+void FindLoopWrenches(const Loop& loop, const FrameT<T>& turns, LoopState<T>* state);
+
+/// C = -d e2 / dv at a closed loop (paper eq. 4: e2 = C dq). Needs LoopErrors and S; writes
+/// LoopState::wrench and loop_columns.
 template <typename T>
 void LoopJacobian(const KinematicTree& tree, TreeWorkspace<T>* ws);
 
-/// The part of the relative acceleration of the anchors that is there when v' = 0, so that a closed
-/// loop obeys C v' + bias = 0. Needs w, v and accelerations of ForwardAccelerations(vdot = nullptr)
-/// and LoopErrors; writes LoopState::bias.
+/// s dC/dt v of one loop, in the scale of its wrenches: s times the part of the relative
+/// acceleration of the anchors that is there when v' = 0. Needs LoopWrenches, V and A of
+/// VelocityProducts; writes Loop::rows entries.
+template <typename T>
+void LoopBias(const KinematicTree& tree, const TreeWorkspace<T>& ws, int loop, double s, T* bias);
+/// The same of all loops, s = 1, into LoopState::bias: a closed loop obeys C v' + bias = 0.
 template <typename T>
 void LoopAccelerationBias(const KinematicTree& tree, TreeWorkspace<T>* ws);
 
 /// T' [v; w]: the equations' share of a twist of M in F, in axes of F. What is behind the last of
-/// the loop's rows is zero. The same rows take a wrench on M to what it does to the multipliers.
+/// the loop's rows is zero.
 template <typename T>
 Vector6<T> ProjectOnRows(const Loop& loop, const LoopState<T>& state, const Vector3<T>& linear,
                          const Vector3<T>& angular);
 
 /// T mu: the wrench on the second link about M, in axes of F, of multipliers mu [rows] on the
 /// equations.
+Wrenchd WrenchOfMultipliers(const Loop& loop, const LoopState<double>& state, const double* mu);
+/// The same about the reference point, by LoopState::wrench.
 template <typename T>
-Wrench<T> WrenchOfMultipliers(const Loop& loop, const LoopState<T>& state, const T* mu);
+ScrewT<T> LoopWrench(const Loop& loop, const LoopState<T>& state, const T* mu);
 
 /// Coordinates of a cut joint that has turned and shifted freely, from the poses of its anchors
 /// [FreedomsOf(type)]; for a spherical joint the rotation vector. Angles within +-pi.
@@ -62,7 +78,7 @@ template <typename T>
 CutJointFreedoms<T> FreedomsOfCutJoint(const Loop& loop, const LoopState<T>& state);
 
 /// Rates of the coordinates of a cut joint [FreedomsOf(type)]; for a spherical joint the angular
-/// velocity of M in F, axes of M. Needs w, v and LoopErrors.
+/// velocity of M in F, axes of M. Needs V and LoopErrors.
 template <typename T>
 Vector3<T> CutJointRates(const KinematicTree& tree, const TreeWorkspace<T>& ws, int loop);
 
@@ -121,30 +137,6 @@ Vector6<T> ProjectOnRows(const Loop& loop, const LoopState<T>& state, const Vect
       break;
   }
   return Stacked<T>(l, a);
-}
-
-template <typename T>
-Wrench<T> WrenchOfMultipliers(const Loop& loop, const LoopState<T>& state, const T* mu) {
-  const T zero(0);
-  switch (loop.type) {
-    case JointType::kRevolute:
-      return {{mu[0], mu[1], mu[2]}, {mu[3], mu[4], zero}};
-    case JointType::kPrismatic:
-      return {{mu[0], mu[1], zero}, {mu[2], mu[3], mu[4]}};
-    case JointType::kCylindrical:
-      return {{mu[0], mu[1], zero}, {mu[2], mu[3], zero}};
-    case JointType::kScrew:
-      return {{mu[0], mu[1], mu[4]}, {mu[2], mu[3], -loop.pitch * mu[4]}};
-    case JointType::kUniversal:
-      return {{mu[0], mu[1], mu[2]}, state.n_F * mu[3]};
-    case JointType::kSpherical:
-      return {{mu[0], mu[1], mu[2]}, {zero, zero, zero}};
-    case JointType::kPlanar:
-      return {{zero, zero, mu[0]}, {mu[1], mu[2], zero}};
-    case JointType::kWeld:
-      return {{mu[0], mu[1], mu[2]}, {mu[3], mu[4], mu[5]}};
-  }
-  return {};
 }
 
 }  // namespace vmech

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "vmech/base/screw_algebra.h"
 #include "vmech/base/linear_algebra/linear_algebra.h"
 #include "vmech/kinematics/loops/assembly.h"
 #include "vmech/kinematics/loops/closure.h"
@@ -57,7 +58,8 @@ RowSpace ConstrainedAt(const KinematicTree& tree, const VectorXd& q) {
 MatrixXd AnchorTwists(const KinematicTree& tree, const TreeWorkspace<double>& ws, size_t loop) {
   MatrixXd twists = MatrixXd::Zero(6, tree.nv);
   for (const LoopColumn& c : tree.loops[loop].columns) {
-    twists.col(c.v) = c.sign * UnitTwistAt(tree, ws, c.node, c.axis, ws.loops[loop].p_WM);
+    const Screw S = c.sign * ws.S[c.v];
+    twists.col(c.v) = Vector6Of(Screw{VelocityAt(ws.loops[loop].F.p, S), S.angular});
   }
   twists.topRows<3>() /= tree.length;
   return twists * VelocityScale(tree).asDiagonal();

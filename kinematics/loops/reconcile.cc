@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "vmech/base/screw_algebra.h"
 #include "vmech/base/rotation_error.h"
 #include "vmech/kinematics/loops/closure.h"
 #include "vmech/kinematics/loops/loop_walk.h"
@@ -73,24 +74,24 @@ class AnchorMoves {
              MatrixXd* P) const {
     const Joint& joint = tree_.mechanism.joints[j];
     const JointPlacement& place = tree_.placements[j];
-    AddAnchor(ws, l, joint.first, PoseInWorld(ws, place.first_node, place.X_AF), sign, row_scale,
+    AddAnchor(ws, l, joint.first, ws.at(place.first_node).X * place.X_AF, sign, row_scale,
               P);
-    AddAnchor(ws, l, joint.second, PoseInWorld(ws, place.second_node, place.X_BM), -sign, row_scale,
+    AddAnchor(ws, l, joint.second, ws.at(place.second_node).X * place.X_BM, -sign, row_scale,
               P);
   }
 
-  void AddAnchor(const TreeWorkspace<double>& ws, int l, AnchorId id, const Posed& X_WA,
+  void AddAnchor(const TreeWorkspace<double>& ws, int l, AnchorId id, const Frame& A,
                  double sign, const VectorXd& row_scale, MatrixXd* P) const {
     const Loop& loop = tree_.loops[l];
     const LoopState<double>& s = ws.loops[l];
     const int column = 6 * index_.at(Id(id.link, id.anchor));
     for (int k = 0; k < 6; ++k) {
-      const Vector3d axis = X_WA.R.col(k % 3);
-      const Vector3d linear =
-          k < 3 ? Vector3d(tree_.length * axis) : Vector3d(axis.cross(s.p_WM - X_WA.p));
-      const Vector3d angular = k < 3 ? Vector3d(Vector3d::Zero()) : axis;
-      const Vector6d opened = sign * ProjectOnRows<double>(loop, s, s.R_WF.transpose() * linear,
-                                                           s.R_WF.transpose() * angular);
+      const Four axis = k % 3 == 0 ? A.x : k % 3 == 1 ? A.y : A.z;
+      const Four linear = k < 3 ? tree_.length * axis : Cross(axis, s.F.p - A.p);
+      const Four angular = k < 3 ? Four{} : axis;
+      const Vector6d opened = sign * ProjectOnRows<double>(loop, s,
+                                                           Vector3Of(InverseRotate(s.F, linear)),
+                                                           Vector3Of(InverseRotate(s.F, angular)));
       for (int i = 0; i < loop.rows; ++i) {
         (*P)(loop.row + i, column + k) += row_scale[loop.row + i] * opened[i];
       }

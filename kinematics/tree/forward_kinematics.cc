@@ -5,156 +5,134 @@
 #include <cstring>
 
 #include "vmech/base/packet.h"
+#include "vmech/base/screw_algebra.h"
 
 namespace vmech {
 namespace {
 
-void TakeSines(const KinematicTree& tree, const Packet* q, TreeWorkspace<Packet>* ws) {
-  for (size_t k = 0; k < tree.turning.size(); ++k) {
-    SinCos(q[tree.turning[k]], &ws->sine[k], &ws->cosine[k]);
+template <typename T>
+void SinesAndCosines(const KinematicTree& tree, const T* q, TreeWorkspace<T>* ws) noexcept {
+  for (size_t k = 0; k < tree.revolute_coordinates.size(); ++k) {
+    SinCos(q[tree.revolute_coordinates[k]], &ws->sine[k], &ws->cosine[k]);
   }
 }
 
-void TakeSines(const KinematicTree& tree, const double* q, TreeWorkspace<double>* ws) {
-  Sines(tree, q, ws->sine.data(), ws->cosine.data());
-}
-
-/// R Rz(angle).
-template <typename T>
-Matrix3<T> TurnedAboutZ(const Matrix3<T>& R, const T& s, const T& c) {
-  Matrix3<T> turned;
-  turned.col(0) = c * R.col(0) + s * R.col(1);
-  turned.col(1) = c * R.col(1) - s * R.col(0);
-  turned.col(2) = R.col(2);
-  return turned;
-}
-
-/// The relative velocity of a node in its parent, world axes.
-template <typename T>
-struct RelativeMotion {
-  Vector3<T> angular = Vector3<T>::Zero();
-  Vector3<T> linear = Vector3<T>::Zero();  ///< of Bo
-};
-
-template <typename T>
-Vector3<T> SphericalRate(const TreeNode& node, const Matrix3<T>& R_WB, const Matrix3<T>& R_WP,
-                         const T* v) {
-  const Vector3<T> rate(v[node.v], v[node.v + 1], v[node.v + 2]);
-  if (!node.reversed) return R_WB * rate;
-  // v is the rate of M in F, in axes of M, which now is fixed in the parent; the child moves back.
-  return -(R_WP * (node.X_PF.R.cast<T>() * rate));
-}
-
-template <typename T>
-RelativeMotion<T> MotionAcross(const TreeNode& node, const Pose<T>& X_WB, const Matrix3<T>& R_WP,
-                               const T* v) {
-  RelativeMotion<T> motion;
-  switch (node.motion) {
-    case NodeMotion::kFixed:
-      break;
-    case NodeMotion::kRevolute:
-      motion.angular = v[node.v] * X_WB.R.col(2);
-      break;
-    case NodeMotion::kPrismatic:
-      motion.linear = v[node.v] * X_WB.R.col(2);
-      break;
-    case NodeMotion::kScrew:
-      motion.angular = v[node.v] * X_WB.R.col(2);
-      motion.linear = node.pitch * motion.angular;
-      break;
-    case NodeMotion::kSpherical:
-      motion.angular = SphericalRate(node, X_WB.R, R_WP, v);
-      break;
+/// Four at a time, filled up to whole registers.
+void SinesAndCosines(const KinematicTree& tree, const double* q,
+                     TreeWorkspace<double>* ws) noexcept {
+  const int* angles = tree.revolute_coordinates.data();
+  const int count = static_cast<int>(tree.revolute_coordinates.size());
+  for (int k = 0; k < count; k += Packet::kLanes) {
+    // Number by number: loading four at once would wait for the last of them to be written.
+    const auto angle = [&](int lane) { return q[angles[std::min(k + lane, count - 1)]]; };
+    Packet s, c;
+    SinCos(Packet::Of(angle), &s, &c);
+    std::memcpy(ws->sine.data() + k, &s, sizeof(s));
+    std::memcpy(ws->cosine.data() + k, &c, sizeof(c));
   }
-  return motion;
+}
+
+/// X Rz.
+template <typename T>
+FrameT<T> RotateAboutZ(const FrameT<T>& X, const T& sine, const T& cosine) {
+  return {cosine * X.x + sine * X.y, cosine * X.y - sine * X.x, X.z, X.p};
+}
+
+/// A turn of 1 rad/s about an axis through p.
+template <typename T>
+ScrewT<T> AxisThrough(const Triple<T>& p, const Triple<T>& axis) {
+  return {Cross(p, axis), axis};
+}
+
+/// Of a node in its parent, at the joints' rates v.
+template <typename T>
+ScrewT<T> JointTwist(const TreeNode& node, const T* v, const TreeWorkspace<T>& ws) {
+  if (node.v < 0) return {};
+  ScrewT<T> V = v[node.v] * ws.S[node.v];
+  for (int k = 1; k < VelocitiesOf(node.motion); ++k) V += v[node.v + k] * ws.S[node.v + k];
+  return V;
 }
 
 }  // namespace
 
-void Sines(const KinematicTree& tree, const double* q, double* sine, double* cosine) noexcept {
-  const int* turning = tree.turning.data();
-  const int count = static_cast<int>(tree.turning.size());
-  for (int k = 0; k < count; k += Packet::kLanes) {
-    // Number by number: loading four at once would wait for the last of them to be written.
-    const auto angle = [&](int lane) { return q[turning[std::min(k + lane, count - 1)]]; };
-    Packet s, c;
-    SinCos(Packet::Of(angle), &s, &c);
-    std::memcpy(sine + k, &s, sizeof(s));
-    std::memcpy(cosine + k, &c, sizeof(c));
-  }
-}
-
 template <typename T>
-void ForwardKinematics(const KinematicTree& tree, const T* q, TreeWorkspace<T>* ws) {
-  TakeSines(tree, q, ws);
+void ForwardKinematics(const KinematicTree& tree, const T* q, TreeWorkspace<T>* ws) noexcept {
+  SinesAndCosines(tree, q, ws);
   const T *sine = ws->sine.data(), *cosine = ws->cosine.data();
-  for (size_t i = 0; i < tree.nodes.size(); ++i) {
+  FrameT<T> X = ws->at(-1).X;
+  for (int i = 0; i < static_cast<int>(tree.nodes.size()); ++i) {
     const TreeNode& node = tree.nodes[i];
-    Pose<T>& X = ws->nodes[i].X_WB;
-    X = PoseInWorld(*ws, node.parent, node.X_PF);
+    if (node.parent != i - 1) X = ws->at(node.parent).X;  // else in registers
+    const FrameT<T>& X_PF = ws->at(i).X_PF;
+    ScrewT<T>* S = ws->S.data() + node.v;
+    // What does not depend on the parent first: a chain waits for each of its nodes.
     switch (node.motion) {
       case NodeMotion::kFixed:
+        X = X * X_PF;
         break;
       case NodeMotion::kRevolute:
-        X.R = TurnedAboutZ(X.R, *sine++, *cosine++);
+        X = X * RotateAboutZ(X_PF, *sine++, *cosine++);
+        *S = AxisThrough<T>(X.p, X.z);
         break;
       case NodeMotion::kPrismatic:
-        X.p += q[node.q] * X.R.col(2);
+        X = X * X_PF;
+        X.p += q[node.q] * X.z;
+        *S = {X.z, ZeroTriple<T>()};
         break;
       case NodeMotion::kScrew:
-        X.p += (node.pitch * q[node.q]) * X.R.col(2);
-        X.R = TurnedAboutZ(X.R, *sine++, *cosine++);
+        X = X * RotateAboutZ(X_PF, *sine++, *cosine++);
+        X.p += (node.pitch * q[node.q]) * X.z;
+        *S = AxisThrough<T>(X.p, X.z);
+        S->linear += node.pitch * X.z;
         break;
       case NodeMotion::kSpherical: {
         const Matrix3<T> R_FM = RotationOf(q + node.q);
-        X.R = node.reversed ? Matrix3<T>(X.R * R_FM.transpose()) : Matrix3<T>(X.R * R_FM);
+        const FrameT<T> F = X * X_PF;
+        X = Rotate(F, node.reversed ? Matrix3<T>(R_FM.transpose()) : R_FM, F.p);
+        // Reversed, v is the rate of the parent in axes that are fixed there.
+        const FrameT<T> M = node.reversed ? FrameT<T>{-F.x, -F.y, -F.z, F.p} : X;
+        for (const Triple<T>* axis : {&M.x, &M.y, &M.z}) *S++ = AxisThrough<T>(X.p, *axis);
         break;
       }
     }
+    ws->at(i).X = X;
   }
 }
 
 template <typename T>
-void ForwardVelocities(const KinematicTree& tree, const T* v, TreeWorkspace<T>* ws) {
-  for (size_t i = 0; i < tree.nodes.size(); ++i) {
+void ForwardVelocities(const KinematicTree& tree, const T* v, TreeWorkspace<T>* ws) noexcept {
+  ScrewT<T> V;
+  for (int i = 0; i < static_cast<int>(tree.nodes.size()); ++i) {
     const TreeNode& node = tree.nodes[i];
-    NodeState<T>& s = ws->nodes[i];
-    if (node.parent < 0) {
-      const RelativeMotion<T> m = MotionAcross<T>(node, s.X_WB, Matrix3<T>::Identity(), v);
-      s.w = m.angular;
-      s.v = m.linear;
-      continue;
-    }
-    const NodeState<T>& parent = ws->nodes[node.parent];
-    const RelativeMotion<T> m = MotionAcross<T>(node, s.X_WB, parent.X_WB.R, v);
-    s.w = parent.w + m.angular;
-    s.v = parent.v + parent.w.cross(s.X_WB.p - parent.X_WB.p) + m.linear;
+    if (node.parent != i - 1) V = ws->at(node.parent).V;
+    V += JointTwist(node, v, *ws);
+    ws->at(i).V = V;
   }
 }
 
 template <typename T>
-void ForwardAccelerations(const KinematicTree& tree, const T* v, const T* vdot,
-                          TreeWorkspace<T>* ws) {
-  for (size_t i = 0; i < tree.nodes.size(); ++i) {
+void VelocityProducts(const KinematicTree& tree, TreeWorkspace<T>* ws) noexcept {
+  ScrewT<T> A = ws->at(-1).A;
+  for (int i = 0; i < static_cast<int>(tree.nodes.size()); ++i) {
+    const typename TreeWorkspace<T>::Node& parent = ws->at(tree.nodes[i].parent);
+    typename TreeWorkspace<T>::Node& s = ws->at(i);
+    if (tree.nodes[i].parent != i - 1) A = parent.A;
+    // Joint axes go with the parent, or with the node, which is the same: V_P x (V - V_P).
+    s.c = CarriedTwist(parent.V, s.V);
+    A += s.c;
+    s.A = A;
+  }
+}
+
+template <typename T>
+void ForwardAccelerations(const KinematicTree& tree, const T* vdot, TreeWorkspace<T>* ws) noexcept {
+  ScrewT<T> A = ws->at(-1).A;
+  for (int i = 0; i < static_cast<int>(tree.nodes.size()); ++i) {
     const TreeNode& node = tree.nodes[i];
-    NodeState<T>& s = ws->nodes[i];
-    const Matrix3<T> R_WP =
-        node.parent < 0 ? Matrix3<T>(Matrix3<T>::Identity()) : ws->nodes[node.parent].X_WB.R;
-    RelativeMotion<T> rate;
-    if (vdot != nullptr) rate = MotionAcross<T>(node, s.X_WB, R_WP, vdot);
-    if (node.parent < 0) {
-      s.alpha = rate.angular;
-      s.a = rate.linear;
-      continue;
-    }
-    // The joint's axis is carried by the parent: w_P x (relative velocity), twice (Coriolis) for
-    // the linear part. The same holds for a spherical joint, because w_rel x w_rel = 0.
-    const NodeState<T>& parent = ws->nodes[node.parent];
-    const RelativeMotion<T> m = MotionAcross<T>(node, s.X_WB, R_WP, v);
-    const Vector3<T> r = s.X_WB.p - parent.X_WB.p;
-    s.alpha = parent.alpha + rate.angular + parent.w.cross(m.angular);
-    s.a = parent.a + parent.alpha.cross(r) + parent.w.cross(parent.w.cross(r) + 2.0 * m.linear) +
-          rate.linear;
+    if (node.parent != i - 1) A = ws->at(node.parent).A;
+    A += ws->at(i).c;
+    A += JointTwist(node, vdot, *ws);
+    ws->at(i).A = A;
   }
 }
 
@@ -202,12 +180,48 @@ void MoveCoordinates(const KinematicTree& tree, const VectorXd& dv, VectorXd* q)
   MoveCoordinates(tree, dv.data(), q->data());
 }
 
+Posed PoseInWorld(const TreeWorkspace<double>& ws, int node, const Posed& X_BQ) {
+  Posed X_WQ = PoseOf(ws.at(node).X * X_BQ);
+  X_WQ.p += ws.reference;
+  return X_WQ;
+}
+
+void GraspJacobian(const KinematicTree& tree, const TreeWorkspace<double>& ws, int node,
+                   const Frame& Q, std::vector<Screw>* J) noexcept {
+  std::fill(J->begin(), J->end(), Screw{});
+  for (int n = node; n >= 0; n = tree.nodes[n].parent) {
+    const TreeNode& carrier = tree.nodes[n];
+    for (int v = carrier.v; v < carrier.v + VelocitiesOf(carrier.motion); ++v) {
+      const Screw& S = ws.S[v];
+      (*J)[v] = {VelocityAt(Q.p, S), S.angular};
+    }
+  }
+}
+
+void GraspJacobian(const KinematicTree& tree, const TreeWorkspace<double>& ws, int node,
+                   const Posed& X_BQ, Matrix6Xd* J) {
+  std::vector<Screw> columns(tree.nv);
+  GraspJacobian(tree, ws, node, ws.at(node).X * X_BQ, &columns);
+  for (int v = 0; v < tree.nv; ++v) J->col(v) = Vector6Of(columns[v]);
+}
+
+Vector6d GraspTwist(const TreeWorkspace<double>& ws, int node, const Posed& X_BQ) {
+  const Screw& V = ws.at(node).V;
+  return Vector6Of(Screw{VelocityAt(PointInWorld(ws.at(node).X, X_BQ.p), V), V.angular});
+}
+
+Vector6d GraspAcceleration(const TreeWorkspace<double>& ws, int node, const Posed& X_BQ) {
+  const Four p = PointInWorld(ws.at(node).X, X_BQ.p);
+  const Screw &V = ws.at(node).V, A = ws.at(node).A - ws.at(-1).A;
+  return Vector6Of(Screw{VelocityAt(p, A) + Cross(V.angular, VelocityAt(p, V)), A.angular});
+}
+
 // NOLINTBEGIN(bugprone-macro-parentheses): T is a type
-#define VMECH_INSTANTIATE(T)                                                             \
-  template void ForwardKinematics<T>(const KinematicTree&, const T*, TreeWorkspace<T>*); \
-  template void ForwardVelocities<T>(const KinematicTree&, const T*, TreeWorkspace<T>*); \
-  template void ForwardAccelerations<T>(const KinematicTree&, const T*, const T*,        \
-                                        TreeWorkspace<T>*);                              \
+#define VMECH_INSTANTIATE(T)                                                                       \
+  template void ForwardKinematics<T>(const KinematicTree&, const T*, TreeWorkspace<T>*) noexcept;  \
+  template void ForwardVelocities<T>(const KinematicTree&, const T*, TreeWorkspace<T>*) noexcept;  \
+  template void VelocityProducts<T>(const KinematicTree&, TreeWorkspace<T>*) noexcept;             \
+  template void ForwardAccelerations<T>(const KinematicTree&, const T*, TreeWorkspace<T>*) noexcept; \
   template void MoveCoordinates<T>(const KinematicTree&, const T*, T*);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Packet)

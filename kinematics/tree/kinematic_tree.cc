@@ -51,7 +51,7 @@ std::vector<Elementary> Decompose(JointType type) {
   return {};
 }
 
-Posed Turned(const Matrix3d& R) {
+Posed PureRotation(const Matrix3d& R) {
   return {R, Vector3d::Zero()};
 }
 
@@ -83,13 +83,13 @@ class Builder {
       node.reversed = reversed;
       node.freedom = e.freedom;
       node.pitch = joint.pitch;
-      node.X_PF = X_PF * Turned(e.R_FE);
+      node.X_PF = X_PF * PureRotation(e.R_FE);
       NumberCoordinates(&node);
       parent = static_cast<int>(tree_.nodes.size());
-      X_PF = Turned(e.R_FE.transpose());
+      X_PF = PureRotation(e.R_FE.transpose());
       tree_.nodes.push_back(node);
     }
-    const Posed X_BA = Turned(chain.back().R_FE.transpose());
+    const Posed X_BA = PureRotation(chain.back().R_FE.transpose());
     AttachLink(outboard.link, X_BA * tree_.mechanism.anchor(outboard).X_LA.inverse());
     tree_.placements[branch.joint].tree_node = parent;
   }
@@ -143,7 +143,7 @@ class Builder {
     if (velocities == 0) return;
     node->q = tree_.nq;
     const bool turns = node->motion == NodeMotion::kRevolute || node->motion == NodeMotion::kScrew;
-    if (turns) tree_.turning.push_back(node->q);
+    if (turns) tree_.revolute_coordinates.push_back(node->q);
     node->v = tree_.nv;
     tree_.nv += velocities;
     tree_.nq += node->motion == NodeMotion::kSpherical ? 4 : 1;
@@ -180,8 +180,24 @@ KinematicTree BuildKinematicTree(Mechanism mechanism, const SpanningTreeOptions&
   Builder builder(&tree);
   for (const SpanningTree::Branch& branch : tree.spanning.branches) builder.AddBranch(branch);
   builder.PlaceAnchors();
-  for (int joint : tree.spanning.cuts) builder.AddLoop(joint);
+    for (int joint : tree.spanning.cuts) builder.AddLoop(joint);
+  tree.reference = CentroidOfGround(tree);
   return tree;
+}
+
+Vector3d CentroidOfGround(const KinematicTree& tree) {
+  Vector3d sum = Vector3d::Zero();
+  int count = 0;
+  const auto add = [&](int carrier, const Vector3d& p) {
+    if (carrier < 0) sum += p, ++count;
+  };
+  for (const TreeNode& node : tree.nodes) add(node.parent, node.X_PF.p);
+  for (const Loop& loop : tree.loops) {
+    const JointPlacement& place = tree.placements[loop.joint];
+    add(place.first_node, place.X_AF.p);
+    add(place.second_node, place.X_BM.p);
+  }
+  return count > 0 ? Vector3d(sum / count) : sum;
 }
 
 VectorXd StartCoordinates(const KinematicTree& tree) {

@@ -85,9 +85,12 @@ struct KinematicTree {
   std::vector<Loop> loops;
   int nq = 0;
   int nv = 0;
-  int rows = 0;              ///< loop equations in all
-  std::vector<int> turning;  ///< the coordinates that are angles: no lengths, no quaternions
-  double length = 1;         ///< characteristic length [m]
+  int rows = 0;  ///< loop equations in all
+  /// Indices in q of angles; lengths and quaternions are none.
+  std::vector<int> revolute_coordinates;
+  double length = 1;  ///< characteristic length [m]
+  /// The point near the mechanism that computations are about, CentroidOfGround [m].
+  Vector3d reference = Vector3d::Zero();
 
   /// Node that carries a link; -1 for the ground.
   int NodeOfLink(int link) const { return node_of_link[link]; }
@@ -97,6 +100,9 @@ struct KinematicTree {
 
 /// @throws std::invalid_argument as FindSpanningTree.
 KinematicTree BuildKinematicTree(Mechanism mechanism, const SpanningTreeOptions& options = {});
+
+/// The centroid of the places on the ground at which joints are made [m].
+Vector3d CentroidOfGround(const KinematicTree& tree);
 
 /// The mechanism's start values in the coordinates of the tree. Cut joints have no part in it.
 VectorXd StartCoordinates(const KinematicTree& tree);

@@ -2,58 +2,59 @@
 
 #include <vector>
 
-#include "vmech/base/four.h"
+#include "vmech/base/screw.h"
 #include "vmech/kinematics/tree/kinematic_tree.h"
 
 namespace vmech {
 
-/// The state of one node; everything expressed in world axes.
-template <typename T>
-struct NodeState {
-  Pose<T> X_WB;     ///< its z axis is that of the node's elementary joint
-  Vector3<T> w, v;  ///< angular velocity; velocity of Bo
-  Vector3<T> alpha, a;
-  Wrench<T> F_Bo;  ///< what the parent exerts on this node, about Bo
-};
-
-/// The state of one loop. F and M are the anchors of the cut joint.
+/// The state of one loop. F and M are the anchors of the cut joint on its first and second link.
 template <typename T>
 struct LoopState {
-  Matrix3<T> R_WF;
-  Vector3<T> p_WM;
-  Vector3<T> p_FM_W;  ///< from F to M, world axes
-  Matrix3<T> R_FM;
-  Vector3<T> n_F;   ///< kUniversal: y_M x x_F, the direction that is neither axis, in F
-  Vector6<T> e2;    ///< paper's e2: what is left to close the loop; the first `rows` entries
-  Vector6<T> bias;  ///< C' v-part: relative acceleration in the closed directions when v' = 0
+  FrameT<T> F;      ///< axes of F at the origin of M
+  Matrix3<T> R_FM;  ///< M in F
+  Vector3<T> p_FM;
+  Vector3<T> n_F;       ///< kUniversal: y_M x x_F, the direction that is neither axis, in F
+  Vector6<T> e2;        ///< paper's e2: what is left to close the loop; the first `rows` entries
+  Vector6<T> bias;      ///< C' v-part: relative acceleration in the closed directions when v' = 0
+  ScrewT<T> wrench[6];  ///< what a unit multiplier of each equation does to the second link
 };
 
 /// Memory for the computations on one tree, sized once. A pose is written by ForwardKinematics and
 /// then only read until the next; each algorithm says which fields it needs and which it writes.
+///
+/// Everything is expressed in world axes about the tree's reference point, to which the mechanism
+/// is near, so that no digits are lost far from the world's origin.
 template <typename T>
 struct TreeWorkspace {
   explicit TreeWorkspace(const KinematicTree& tree);
 
-  std::vector<NodeState<T>> nodes;
+  /// Node i is at i + 1; the ground comes first.
+  struct Node {
+    FrameT<T> X_PF;  ///< of the tree
+    FrameT<T> X;     ///< pose; its z axis is that of the node's elementary joint
+    ScrewT<T> V;     ///< twist
+    ScrewT<T> c;     ///< velocity product: what A would be if the parent's A and v' were zero
+    ScrewT<T> A;     ///< rate of V; that of the ground is the caller's (SetGravity)
+    ScrewT<T> p;     ///< velocity product: what F would be if A were zero
+    ScrewT<T> F;     ///< what the parent exerts on this node
+  };
+  /// Where the anchors of a joint are: as in JointPlacement.
+  struct Placement {
+    FrameT<T> X_AF, X_BM;
+  };
+
+  Vector3d reference;  ///< the point that everything is about, in the world [m]
+  std::vector<Node> nodes;
+  std::vector<ScrewT<T>> S;  ///< twist of each unit velocity [nv]
+  std::vector<Placement> placements;
   std::vector<LoopState<T>> loops;
   /// Columns of C, loop after loop in the order of Loop::columns; the first `rows` entries count.
   std::vector<Vector6<T>> loop_columns;
   std::vector<int> first_column;  ///< of each loop in loop_columns
-  std::vector<T> sine, cosine;    ///< of KinematicTree::turning, see Sines
-};
+  std::vector<T> sine, cosine;    ///< of the coordinates that are angles
 
-template <typename T>
-TreeWorkspace<T>::TreeWorkspace(const KinematicTree& tree)
-    : nodes(tree.nodes.size()),
-      loops(tree.loops.size()),
-      sine(PaddedSize(static_cast<int>(tree.turning.size()))),
-      cosine(sine) {
-  int columns = 0;
-  for (const Loop& loop : tree.loops) {
-    first_column.push_back(columns);
-    columns += static_cast<int>(loop.columns.size());
-  }
-  loop_columns.assign(columns, Vector6<T>::Zero());
-}
+  const Node& at(int node) const { return nodes[node + 1]; }
+  Node& at(int node) { return nodes[node + 1]; }
+};
 
 }  // namespace vmech

@@ -10,7 +10,7 @@
 #include "vmech/dynamics/loads/run_load_study.h"
 #include "vmech/kinematics/loops/assembly.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
-#include "vmech/kinematics/tree/jacobian.h"
+#include "vmech/kinematics/tree/forward_kinematics.h"
 
 namespace vmech {
 namespace {
@@ -115,7 +115,7 @@ TEST_P(EveryHeldExample, PowerOfTheHandIsTheRateOfTheEnergy) {
   ASSERT_TRUE(dynamics.Evaluate(hand.V_WH, hand.A_WH));
   const VectorXd v = dynamics.v(), vdot = dynamics.vdot();
   Matrix6Xd J(6, held_.tree.nv);
-  PointJacobian(held_.tree, held_.ws, held_.frame.node, held_.X_WG.p, &J);
+  GraspJacobian(held_.tree, held_.ws, held_.frame.node, held_.frame.X_BG, &J);
   const double power = dynamics.w_d().dot(J * v);
   constexpr double kStep = 1e-4;  // a third of it leaves rounding, three times curvature
   const auto energy_at = [&](double t) {
@@ -124,8 +124,7 @@ TEST_P(EveryHeldExample, PowerOfTheHandIsTheRateOfTheEnergy) {
     TreeWorkspace<double> ws(held_.tree);
     ForwardKinematics(held_.tree, q.data(), &ws);
     Matrix6Xd J_t(6, held_.tree.nv);
-    const Posed X = PoseInWorld(ws, held_.frame.node, held_.frame.X_BG);
-    PointJacobian(held_.tree, ws, held_.frame.node, X.p, &J_t);
+    GraspJacobian(held_.tree, ws, held_.frame.node, held_.frame.X_BG, &J_t);
     dynamics.SetPose(q);
     EXPECT_TRUE(dynamics.Evaluate(J_t * (v + t * vdot), Vector6d::Zero()));
     return dynamics.Energy();
@@ -141,7 +140,7 @@ TEST_P(EveryHeldExample, HandWrenchLiesAlongTheFreeMotion) {
   ASSERT_TRUE(dynamics.Evaluate(Vector6d::Zero(), Vector6d::Zero()));
   const Vector6d yielding = dynamics.w_d().cwiseQuotient(K_);
   Matrix6Xd J(6, held_.tree.nv);
-  PointJacobian(held_.tree, held_.ws, held_.frame.node, held_.X_WG.p, &J);
+  GraspJacobian(held_.tree, held_.ws, held_.frame.node, held_.frame.X_BG, &J);
   dynamics.SetPose(held_.q);
   ASSERT_TRUE(dynamics.Evaluate(yielding, Vector6d::Zero()));
   EXPECT_LT((J * dynamics.v() - yielding).norm(), 1e-7 * yielding.norm());

@@ -19,17 +19,21 @@ class EveryTree : public testing::TestWithParam<std::string> {
   EveryTree()
       : tree_(BuildKinematicTree(Example(GetParam()))),
         ws_(tree_),
+        inertias_(tree_),
         q_(RandomCoordinates(tree_, &random_)),
-        v_(random_.Vector(tree_.nv)) {}
+        v_(random_.Vector(tree_.nv)) {
+    SetGravity(tree_.mechanism.gravity_W, &ws_);
+  }
 
   VectorXd InverseDynamics(const VectorXd& v, const VectorXd& vdot) {
     EvaluatePose(tree_, q_, &ws_, false);
     ForwardVelocities(tree_, v.data(), &ws_);
-    ForwardAccelerations(tree_, v.data(), vdot.data(), &ws_);
-    const std::vector<Wrenchd> none(tree_.nodes.size());
-    RecursiveNewtonEuler<double>(tree_, tree_.mechanism.gravity_W, none.data(), &ws_);
+    VelocityProducts(tree_, &ws_);
+    ForwardAccelerations(tree_, vdot.data(), &ws_);
+    BodyInertias(tree_, ws_, &inertias_);
+    GyroscopicWrenches(tree_, inertias_, &ws_);
     VectorXd tau(tree_.nv);
-    GeneralisedForces(tree_, ws_, tau.data());
+    NewtonEuler<double>(tree_, inertias_, nullptr, &ws_, tau.data());
     return tau;
   }
 
@@ -38,7 +42,8 @@ class EveryTree : public testing::TestWithParam<std::string> {
     double energy = 0;
     for (size_t i = 0; i < tree_.nodes.size(); ++i) {
       const TreeNode& node = tree_.nodes[i];
-      energy -= node.mass * tree_.mechanism.gravity_W.dot(ws_.nodes[i].X_WB * node.p_BoBcm);
+      const Posed X_WB = PoseInWorld(ws_, static_cast<int>(i), {});
+      energy -= node.mass * tree_.mechanism.gravity_W.dot(X_WB * node.p_BoBcm);
     }
     return energy;
   }
@@ -49,9 +54,10 @@ class EveryTree : public testing::TestWithParam<std::string> {
     double energy = 0;
     for (size_t i = 0; i < tree_.nodes.size(); ++i) {
       const TreeNode& node = tree_.nodes[i];
-      const NodeState<double>& s = ws_.nodes[i];
-      const Vector3d w_B = s.X_WB.R.transpose() * s.w;
-      const Vector3d v_cm = s.v + s.w.cross(s.X_WB.R * node.p_BoBcm);
+      const Matrix3d R_WB = PoseInWorld(ws_, static_cast<int>(i), {}).R;
+      const Posed X_Bcm{Matrix3d::Identity(), node.p_BoBcm};
+      const Vector6d V = GraspTwist(ws_, static_cast<int>(i), X_Bcm);
+      const Vector3d v_cm = V.head<3>(), w_B = R_WB.transpose() * V.tail<3>();
       energy += 0.5 * (node.mass * v_cm.squaredNorm() + w_B.dot(node.I_Bcm * w_B));
     }
     return energy;
@@ -60,6 +66,7 @@ class EveryTree : public testing::TestWithParam<std::string> {
   Random random_{11};
   KinematicTree tree_;
   TreeWorkspace<double> ws_;
+  TreeInertias<double> inertias_;
   VectorXd q_, v_;
 };
 
@@ -108,6 +115,29 @@ TEST_P(EveryTree, PowerOfTheBiasIsHalfTheRateOfTheMassMatrix) {
   };
   const double slope = (twice_energy(kStep) - twice_energy(-kStep)) / (4 * kStep);
   EXPECT_NEAR(bias_power, slope, kDifference * (1 + std::abs(slope) + twice_energy(0)));
+}
+
+TEST_P(EveryTree, MomentaAreTheMassMatrixTimesVelocities) {
+  ForwardKinematics(tree_, q_.data(), &ws_);
+  BodyInertias(tree_, ws_, &inertias_);
+  VectorXd momenta(tree_.nv);
+  Momenta(tree_, inertias_, v_.data(), &ws_, momenta.data());
+  const VectorXd expected = MassMatrix(tree_, q_) * v_;
+  EXPECT_LE((momenta - expected).norm(), kIdentity * expected.norm());
+  const double energy = KineticEnergy(v_);
+  EXPECT_NEAR(vmech::KineticEnergy(tree_, inertias_, ws_), energy, kIdentity * energy);
+}
+
+TEST_P(EveryTree, WeightEnergyChangesAsTheCentresOfGravityRise) {
+  const auto weight_energy = [&](const VectorXd& q) {
+    ForwardKinematics(tree_, q.data(), &ws_);
+    BodyInertias(tree_, ws_, &inertias_);
+    return WeightEnergy(tree_, inertias_);
+  };
+  const VectorXd other = RandomCoordinates(tree_, &random_);
+  const double change = weight_energy(other) - weight_energy(q_);
+  const double expected = PotentialEnergy(other) - PotentialEnergy(q_);
+  EXPECT_NEAR(change, expected, kIdentity * (1 + std::abs(PotentialEnergy(q_))));
 }
 
 INSTANTIATE_TEST_SUITE_P(Examples, EveryTree, testing::ValuesIn(ExampleNames()),

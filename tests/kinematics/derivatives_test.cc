@@ -6,7 +6,6 @@
 #include "vmech/kinematics/loops/closure.h"
 #include "vmech/kinematics/loops/loops.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
-#include "vmech/kinematics/tree/jacobian.h"
 
 namespace vmech {
 namespace {
@@ -37,7 +36,7 @@ TEST_P(EveryExample, JacobianIsTheDerivativeOfThePose) {
   EvaluatePose(tree_, q, &ws_);
   const Posed X_WQ = PoseInWorld(ws_, node, X_BQ);
   Matrix6Xd J(6, tree_.nv);
-  PointJacobian(tree_, ws_, node, X_WQ.p, &J);
+  GraspJacobian(tree_, ws_, node, X_BQ, &J);
   auto pose = [&](double t) {
     EvaluatePose(tree_, Moved(q, v, t), &ws_);
     return PoseInWorld(ws_, node, X_BQ);
@@ -77,12 +76,13 @@ TEST_P(EveryExample, AccelerationIsTheDerivativeOfTheTwist) {
     EvaluatePose(tree_, moved, &ws_, false);
     const VectorXd rate = v + vdot * t;
     ForwardVelocities(tree_, rate.data(), &ws_);
-    return PointTwist(ws_, node, ws_.nodes[node].X_WB.p);
+    return GraspTwist(ws_, node, {});
   };
   const Vector6d slope = (twist(kStep) - twist(-kStep)) / (2 * kStep);
   twist(0);
-  ForwardAccelerations(tree_, v.data(), vdot.data(), &ws_);
-  const Vector6d A = PointAcceleration(ws_, node, ws_.nodes[node].X_WB.p);
+  VelocityProducts(tree_, &ws_);
+  ForwardAccelerations(tree_, vdot.data(), &ws_);
+  const Vector6d A = GraspAcceleration(ws_, node, {});
   EXPECT_LT((slope - A).norm(), kDifference * (1 + A.norm()));
 }
 
@@ -97,7 +97,7 @@ TEST_P(EveryExample, LoopBiasIsTheDerivativeOfTheLoopVelocity) {
   const VectorXd w = random_.Vector(tree_.nv);
   const VectorXd v = w - C.completeOrthogonalDecomposition().solve(C * w);
   ForwardVelocities(tree_, v.data(), &ws_);
-  ForwardAccelerations<double>(tree_, v.data(), nullptr, &ws_);
+  VelocityProducts(tree_, &ws_);
   LoopAccelerationBias(tree_, &ws_);
   VectorXd bias(tree_.rows);
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
@@ -117,6 +117,44 @@ TEST_P(EveryExample, LoopBiasIsTheDerivativeOfTheLoopVelocity) {
 
 INSTANTIATE_TEST_SUITE_P(Examples, EveryExample, testing::ValuesIn(ExampleNames()),
                          [](const auto& info) { return TestName(info.param); });
+
+/// Every type of joint where the loop is cut, which the examples do not have all.
+class EveryCutJoint : public testing::TestWithParam<int> {};
+
+TEST_P(EveryCutJoint, HasTheEquationsShareOfTheAnchorsRelativeTwist) {
+  Mechanism linkage = Example("rssr");
+  const int last = static_cast<int>(linkage.joints.size()) - 1;
+  Joint& cut = linkage.joints[last];
+  cut = MakeJoint(cut.name, static_cast<JointType>(GetParam()), cut.first, cut.second);
+  cut.pitch = cut.type == JointType::kScrew ? 0.3 : 0;
+  SpanningTreeOptions options;
+  options.cut = {last};
+  const KinematicTree tree = BuildKinematicTree(linkage, options);
+  ASSERT_EQ(tree.loops.at(0).type, cut.type);
+  Random random(5);
+  const VectorXd q = RandomCoordinates(tree, &random);
+  TreeWorkspace<double> ws(tree);
+  EvaluatePose(tree, q, &ws);
+  const JointPlacement& place = tree.placements[last];
+  const Posed X_WF = PoseInWorld(ws, place.first_node, place.X_AF);
+  const Posed X_WM = PoseInWorld(ws, place.second_node, place.X_BM);
+  // The point of the first link that is at M now.
+  const Posed X_AM = PoseInWorld(ws, place.first_node, {}).inverse() * X_WM;
+  Matrix6Xd J_A(6, tree.nv), J_B(6, tree.nv);
+  GraspJacobian(tree, ws, place.first_node, X_AM, &J_A);
+  GraspJacobian(tree, ws, place.second_node, place.X_BM, &J_B);
+  const MatrixXd C = DenseLoopJacobian(tree, ws);
+  for (int v = 0; v < tree.nv; ++v) {
+    const Vector6d V = J_B.col(v) - J_A.col(v);
+    const Vector6d expected =
+        ProjectOnRows<double>(tree.loops[0], ws.loops[0], X_WF.R.transpose() * V.head<3>(),
+                              X_WF.R.transpose() * V.tail<3>());
+    EXPECT_LE((C.col(v) - expected.head(tree.rows)).norm(), 1e-12 * (1 + expected.norm()));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Types, EveryCutJoint,
+                         testing::Range(0, static_cast<int>(JointType::kWeld) + 1));
 
 }  // namespace
 }  // namespace vmech

@@ -11,7 +11,7 @@
 #include "vmech/kinematics/inverse/inverse_kinematics.h"
 #include "vmech/kinematics/loops/loops.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
-#include "vmech/kinematics/tree/jacobian.h"
+#include "vmech/kinematics/tree/forward_kinematics.h"
 #include "vmech/solvers/augmented_lagrangian.h"
 #include "vmech/solvers/backend.h"
 #include "vmech/solvers/nullspace.h"
@@ -69,9 +69,8 @@ TEST_P(Pulled, EndsAtATrueConstrainedMinimum) {
 TEST_P(Pulled, HandWrenchDoesNoWorkOnFreeMotions) {
   TreeWorkspace<double> ws(tree_);
   ForwardKinematics(tree_, exact_.x.data(), &ws);
-  const Posed X_WG = problem_.GraspPose(exact_.x);
   Matrix6Xd J(6, tree_.nv);
-  PointJacobian(tree_, ws, problem_.grasp().node, X_WG.p, &J);
+  GraspJacobian(tree_, ws, problem_.grasp().node, problem_.grasp().X_BG, &J);
   const VectorXd force = J.transpose() * problem_.HandWrench(exact_.x);
   const MatrixXd N = FindNullSpace(At(exact_.x).C, kRank).basis;
   const double error = problem_.HandError(exact_.x).norm();
@@ -85,7 +84,7 @@ TEST_P(Pulled, MultipliersInNewtonsBalanceTheHandWrench) {
   TreeWorkspace<double> ws(tree_);
   ForwardKinematics(tree_, exact_.x.data(), &ws);
   Matrix6Xd J(6, tree_.nv);
-  PointJacobian(tree_, ws, problem_.grasp().node, problem_.GraspPose(exact_.x).p, &J);
+  GraspJacobian(tree_, ws, problem_.grasp().node, problem_.grasp().X_BG, &J);
   const VectorXd force = J.transpose() * problem_.HandWrench(exact_.x);
   LoopErrors(tree_, &ws);
   LoopJacobian(tree_, &ws);

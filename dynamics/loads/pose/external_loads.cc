@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "vmech/base/packet.h"
+#include "vmech/base/screw_algebra.h"
 
 namespace vmech {
 
@@ -58,10 +59,12 @@ void EvaluateExternalLoads(const LoadModel& model, const Motion& motion, size_t 
       W.moment[k] = FromLanes<T>([&](int lane) { return lanes[lane].moment[k]; });
     }
     const int node = model.tree.NodeOfLink(load.link);
-    ws->external_W[i] = W;
-    if (load.axes == ExternalLoad::Axes::kWorld || node < 0) continue;
-    const Matrix3<T> R_WL = ws->tree.nodes[node].X_WB.R * model.tree.nodes[node].X_BL.R.cast<T>();
-    ws->external_W[i] = {R_WL * W.force, R_WL * W.moment};
+    if (node < 0) continue;
+    const FrameT<T> L = ws->tree.at(node).X * FrameOf<T>(model.tree.nodes[node].X_BL);
+    FrameT<T> at;
+    if (load.axes == ExternalLoad::Axes::kLink) at = L;
+    at.p = PointInWorld(L, TripleOf<T>(load.p_L));
+    ws->external[i] = WrenchFrom(at, W);
   }
 }
 

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "vmech/base/linear_algebra/linear_algebra.h"
+#include "vmech/base/screw_algebra.h"
 #include "vmech/dynamics/rigid_body/newton_euler.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
-#include "vmech/kinematics/tree/jacobian.h"
 
 namespace vmech {
 namespace {
@@ -25,20 +25,21 @@ VectorXd NearestMotion(const LoadModel& model, const LoadWorkspace<double>& ws, 
 
 }  // namespace
 
+GraspFrame HandGrasp(const LoadModel& model) {
+  return GraspFrameOf(model.tree, model.hand->grasp);
+}
+
 MatrixXd WeightedGraspMotions(const LoadModel& model, const TreeWorkspace<double>& ws,
                               const MatrixXd& N) {
+  const GraspFrame grasp = HandGrasp(model);
   Matrix6Xd J(6, model.tree.nv);
-  PointJacobian(model.tree, ws, GraspNode(model), GraspPose(model, ws).p, &J);
+  GraspJacobian(model.tree, ws, grasp.node, grasp.X_BG, &J);
   return model.hand_stiffness.cwiseSqrt().asDiagonal() * J * N;
 }
 
-int GraspNode(const LoadModel& model) {
-  return model.tree.NodeOfLink(model.tree.mechanism.grasps[model.hand->grasp].link);
-}
-
 Posed GraspPose(const LoadModel& model, const TreeWorkspace<double>& ws) {
-  const Grasp& grasp = model.tree.mechanism.grasps[model.hand->grasp];
-  return PoseInWorld(ws, GraspNode(model), model.tree.X_node_link(grasp.link) * grasp.X_LG);
+  const GraspFrame grasp = HandGrasp(model);
+  return PoseInWorld(ws, grasp.node, grasp.X_BG);
 }
 
 void HandVelocities(const LoadModel& model, const HandSample& hand, LoadWorkspace<double>* ws) {
@@ -46,7 +47,8 @@ void HandVelocities(const LoadModel& model, const HandSample& hand, LoadWorkspac
 }
 
 void HandAccelerations(const LoadModel& model, const HandSample& hand, LoadWorkspace<double>* ws) {
-  const Vector6d A_WG = PointAcceleration(ws->tree, GraspNode(model), GraspPose(model, ws->tree).p);
+  const GraspFrame grasp = HandGrasp(model);
+  const Vector6d A_WG = GraspAcceleration(ws->tree, grasp.node, grasp.X_BG);
   ws->vdot += ws->motions * NearestMotion(model, *ws, hand.A_WH - A_WG);
 }
 
@@ -57,11 +59,14 @@ void ApplyHandWrench(const LoadModel& model, LoadWorkspace<double>* ws) {
   const Vector6d w_d = model.hand_stiffness.cwiseSqrt().cwiseProduct(
       MinimumNormSolution(A.transpose(), along, kUnseen * std::min(1.0, largest)));
   ws->hand = {w_d.head<3>(), w_d.tail<3>()};
-  const Vector3d p_WG = GraspPose(model, ws->tree).p;
-  for (int n = GraspNode(model); n >= 0; n = model.tree.nodes[n].parent) {
-    NodeState<double>& node = ws->tree.nodes[n];
-    node.F_Bo -= ws->hand.ShiftedBy(p_WG - node.X_WB.p);
-  }
+  ApplyHand(model, ws);
+}
+
+void ApplyHand(const LoadModel& model, LoadWorkspace<double>* ws) {
+  const GraspFrame grasp = HandGrasp(model);
+  const Four p = PointInWorld(ws->tree.at(grasp.node).X, grasp.X_BG.p);
+  const Screw W = WrenchAt(p, FourOf(ws->hand.force), FourOf(ws->hand.moment));
+  ApplyAlongBranch(model.tree, grasp.node, W, &ws->tree);
   GeneralisedForces(model.tree, ws->tree, ws->tau.data());
 }
 

@@ -4,25 +4,19 @@
 #include <algorithm>
 
 #include "vmech/base/linear_algebra/linear_algebra.h"
+#include "vmech/base/screw_algebra.h"
 #include "vmech/dynamics/loads/pose/hand_wrench.h"
 #include "vmech/dynamics/rigid_body/newton_euler.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
-#include "vmech/kinematics/tree/jacobian.h"
 
 namespace vmech {
 namespace {
 
-/// Momentum of all links in the velocities v, as the generalised momentum M v along each idle
-/// motion: N_i' M v. Uses node velocities as scratch.
+/// Momentum of all links in the velocities v along each idle motion: N_i' M v. Uses V and F of the
+/// nodes as scratch.
 VectorXd IdleMomentum(const LoadModel& model, const VectorXd& v, LoadWorkspace<double>* ws) {
-  // M v is the inverse dynamics of the accelerations v at rest without gravity.
-  const std::vector<Wrenchd> nothing(model.tree.nodes.size());
-  const VectorXd rest = VectorXd::Zero(model.tree.nv);
-  ForwardVelocities(model.tree, rest.data(), &ws->tree);
-  ForwardAccelerations<double>(model.tree, rest.data(), v.data(), &ws->tree);
-  RecursiveNewtonEuler<double>(model.tree, Vector3d::Zero(), nothing.data(), &ws->tree);
   VectorXd momentum = VectorXd::Zero(model.tree.nv);
-  GeneralisedForces(model.tree, ws->tree, momentum.data());
+  Momenta(model.tree, ws->inertias, v.data(), &ws->tree, momentum.data());
   return ws->idle_motions.transpose() * momentum;
 }
 
@@ -50,15 +44,16 @@ VectorXd IdleShares(const LoadModel& model, const std::vector<Posed>& before, co
     ForwardVelocities(model.tree, v.data(), ws);
     for (size_t i = 0; i < motion.size(); ++i) {
       const TreeNode& node = model.tree.nodes[i];
-      const NodeState<double>& s = ws->nodes[i];
-      const Vector3d v_cm = s.v + s.w.cross(s.X_WB.R * node.p_BoBcm);
-      const Vector3d spin = s.X_WB.R * (node.I_Bcm * (s.X_WB.R.transpose() * s.w));
-      motion[i].col(k) << v_cm, s.w;
-      momentum[i].col(k) << node.mass * v_cm, spin;
+      const TreeWorkspace<double>::Node& s = ws->nodes[i + 1];
+      const Matrix3d R = RotationOf(s.X);
+      const Vector3d v_cm = Vector3Of(VelocityAt(PointInWorld(s.X, node.p_BoBcm), s.V));
+      const Vector3d w = Vector3Of(s.V.angular);
+      motion[i].col(k) << v_cm, w;
+      momentum[i].col(k) << node.mass * v_cm, R * (node.I_Bcm * (R.transpose() * w));
     }
   }
   for (size_t i = 0; i < motion.size(); ++i) {
-    const Posed& X_WB = ws->nodes[i].X_WB;
+    const Posed X_WB = PoseOf(ws->nodes[i + 1].X);
     const Eigen::AngleAxisd turn(Matrix3d(X_WB.R * before[i].R.transpose()));
     Vector6d d;
     d << X_WB * model.tree.nodes[i].p_BoBcm - before[i].p, turn.angle() * turn.axis();
@@ -99,17 +94,15 @@ void SettleIdleFreedoms(const LoadModel& model, LoadWorkspace<double>* ws) {
   };
   ws->vdot -= ws->idle_motions * SolveAboveFloor(IdleInertia(model, ws), open(), model.no_inertia);
   ForwardVelocities(model.tree, ws->v.data(), &ws->tree);
-  ForwardAccelerations<double>(model.tree, ws->v.data(), ws->vdot.data(), &ws->tree);
-  RecursiveNewtonEuler<double>(model.tree, model.tree.mechanism.gravity_W, ws->applied.data(),
-                               &ws->tree);
-  GeneralisedForces(model.tree, ws->tree, ws->tau.data());
+  ForwardAccelerations(model.tree, ws->vdot.data(), &ws->tree);
+  NewtonEuler(model.tree, ws->inertias, ws->applied.data(), &ws->tree, ws->tau.data());
   ws->unresisted = open().cwiseAbs().maxCoeff();
 }
 
 void IdlePositions::Remember(const TreeWorkspace<double>& ws) {
   before_.clear();
-  for (size_t i = 0; i < ws.nodes.size(); ++i) {
-    const Posed& X_WB = ws.nodes[i].X_WB;
+  for (size_t i = 0; i < model_.tree.nodes.size(); ++i) {
+    const Posed X_WB = PoseOf(ws.nodes[i + 1].X);
     before_.push_back({X_WB.R, X_WB * model_.tree.nodes[i].p_BoBcm});
   }
 }
@@ -139,9 +132,9 @@ double ShiftOfCentres(const KinematicTree& tree, const VectorXd& v, TreeWorkspac
   double shift = 0;
   for (size_t i = 0; i < tree.nodes.size(); ++i) {
     if (tree.nodes[i].mass == 0) continue;
-    const NodeState<double>& s = ws->nodes[i];
-    const Vector3d c = s.X_WB.R * tree.nodes[i].p_BoBcm;
-    shift = std::max(shift, (s.v + s.w.cross(c)).norm() / tree.length);
+    const TreeWorkspace<double>::Node& s = ws->nodes[i + 1];
+    const Four c = PointInWorld(s.X, tree.nodes[i].p_BoBcm);
+    shift = std::max(shift, Length(VelocityAt(c, s.V)) / tree.length);
   }
   return shift;
 }

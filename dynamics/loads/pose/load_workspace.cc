@@ -10,11 +10,12 @@ LoadWorkspace<T>::LoadWorkspace(const LoadModel& model)
       dependents(model.tree, model.partition),
       reactions(model.tree, model.partition, model.compliances),
       joints(model.tree.mechanism.joints.size()),
+      inertias(model.tree),
       applied(model.tree.nodes.size()),
       cut_passive(model.tree.loops.size()),
       sliding(joints.size(), Vector3<T>::Zero()),
       along(joints.size(), Vector3<T>::Zero()),
-      external_W(model.external.size()),
+      external(model.external.size()),
       q(VectorX::Zero(model.tree.nq)),
       v(VectorX::Zero(model.tree.nv)),
       vdot(VectorX::Zero(model.tree.nv)),
@@ -24,6 +25,7 @@ LoadWorkspace<T>::LoadWorkspace(const LoadModel& model)
       mu(VectorX::Zero(model.tree.rows)),
       loads(joints.size(), {{}, Vector3<T>::Zero(), Vector3<T>::Zero()}),
       drive_forces(model.drives.size(), T(0)) {
+  SetGravity(model.tree.mechanism.gravity_W, &tree);
   const CoordinatePartition& p = model.partition;
   if (model.hand || !p.idle.empty()) {
     motions = MatrixXd::Zero(model.tree.nv, static_cast<int>(p.driven.size() + p.idle.size()));

@@ -5,6 +5,7 @@
 #include "vmech/dynamics/loads/pose/friction_iteration.h"
 #include "vmech/dynamics/loads/pose/joint_load.h"
 #include "vmech/dynamics/loads/pose/load_model.h"
+#include "vmech/dynamics/rigid_body/newton_euler.h"
 #include "vmech/kinematics/loops/closure.h"
 
 namespace vmech {
@@ -29,11 +30,12 @@ struct LoadWorkspace {
   DependentSolver<T> dependents;
   ReactionSolver<T> reactions;
   std::vector<JointState<T>> joints;
-  std::vector<Wrench<T>> applied;      ///< per node about Bo, from outside
+  TreeInertias<T> inertias;
+  std::vector<ScrewT<T>> applied;      ///< per node, from outside
   std::vector<Wrench<T>> cut_passive;  ///< per loop: springs and friction of the cut joint, in F
   std::vector<Vector3<T>> sliding;     ///< per joint: its rates, zero where it rests
   std::vector<Vector3<T>> along;       ///< per joint: springs and friction along its freedoms
-  std::vector<Wrench<T>> external_W;   ///< the external loads about their points, world axes
+  std::vector<ScrewT<T>> external;     ///< the external loads
   VectorX q, v, vdot;
   VectorX tau;       ///< needed along each freedom
   VectorX passive;   ///< supplied by springs and friction

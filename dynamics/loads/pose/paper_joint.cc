@@ -1,9 +1,9 @@
 #include "vmech/dynamics/loads/pose/paper_joint.h"
 
 #include "vmech/base/linear_algebra/linear_algebra.h"
+#include "vmech/base/screw_algebra.h"
 #include "vmech/dynamics/loads/pose/hand_wrench.h"
 #include "vmech/kinematics/loops/loops.h"
-#include "vmech/kinematics/tree/jacobian.h"
 
 namespace vmech {
 namespace {
@@ -23,10 +23,10 @@ KinematicTree CutThroughLinks(KinematicTree tree) {
 /// Rows of the drives: the grasp's Jacobian, or one unit row for each motor.
 MatrixXd DriveRows(const LoadModel& model, const LoadWorkspace<double>& ws) {
   if (model.hand) {
+    const GraspFrame grasp = HandGrasp(model);
     Matrix6Xd J(6, model.tree.nv);
-    PointJacobian(model.tree, ws.tree, GraspNode(model), GraspPose(model, ws.tree).p, &J);
-    const bool point = model.tree.mechanism.grasps[model.hand->grasp].kind == GraspKind::kPoint;
-    return point ? MatrixXd(J.topRows(3)) : MatrixXd(J);
+    GraspJacobian(model.tree, ws.tree, grasp.node, grasp.X_BG, &J);
+    return grasp.kind == GraspKind::kPoint ? MatrixXd(J.topRows(3)) : MatrixXd(J);
   }
   MatrixXd E = MatrixXd::Zero(static_cast<Eigen::Index>(model.drives.size()), model.tree.nv);
   for (size_t k = 0; k < model.drives.size(); ++k) {
@@ -47,6 +47,7 @@ void SolvePaperJoint(const LoadModel& model, LoadWorkspace<double>* ws) {
   const KinematicTree through = CutThroughLinks(model.tree);
   TreeWorkspace<double> full(through);
   full.nodes = ws->tree.nodes;
+  full.S = ws->tree.S;
   LoopErrors(through, &full);
   LoopJacobian(through, &full);
   const MatrixXd J = DriveRows(model, *ws);
@@ -56,21 +57,14 @@ void SolvePaperJoint(const LoadModel& model, LoadWorkspace<double>* ws) {
     ws->hand = {};
     ws->hand.force = x.head<3>();
     if (J.rows() == 6) ws->hand.moment = x.segment<3>(3);
-    const Vector3d p_WG = GraspPose(model, ws->tree).p;
-    for (int n = GraspNode(model); n >= 0; n = model.tree.nodes[n].parent) {
-      full.nodes[n].F_Bo -= ws->hand.ShiftedBy(p_WG - full.nodes[n].X_WB.p);
-    }
+    ApplyHand(model, ws);
+    full.nodes = ws->tree.nodes;
   }
   const VectorXd w_cut = x.tail(through.rows);
-  AddMultiplierWrenches(through, w_cut.data(), &full);
+  ApplyMultipliers(through, w_cut.data(), &full, &ws->joints);
   ws->tree.nodes = full.nodes;
-  TreeJointWrenches(model.tree, ws->tree, &ws->joints);
-  for (const Loop& loop : through.loops) {
-    const Matrix3d& R_WF = ws->joints[loop.joint].R_WF;
-    const Wrenchd cut{w_cut.segment<3>(loop.row), w_cut.segment<3>(loop.row + 3)};
-    const Wrenchd& passive = ws->cut_passive[static_cast<size_t>(&loop - through.loops.data())];
-    ws->joints[loop.joint].W_M = {R_WF * (cut.force + passive.force),
-                                  R_WF * (cut.moment + passive.moment)};
+  for (size_t l = 0; l < through.loops.size(); ++l) {
+    ws->joints[through.loops[l].joint].W += WrenchFrom(full.loops[l].F, ws->cut_passive[l]);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "vmech/base/packet.h"
+#include "vmech/base/screw_algebra.h"
 #include "vmech/dynamics/loads/load_result.h"
 #include "vmech/dynamics/loads/pose/external_loads.h"
 #include "vmech/dynamics/loads/pose/hand_wrench.h"
@@ -15,7 +16,6 @@
 #include "vmech/dynamics/rigid_body/newton_euler.h"
 #include "vmech/kinematics/loops/loops.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
-#include "vmech/kinematics/tree/jacobian.h"
 
 namespace vmech {
 namespace {
@@ -35,7 +35,7 @@ Vector3<T> RotationVector(const T* wxyz) {
 }
 
 template <typename T>
-constexpr bool kSinglePose = kLanesOf<T> == 1;
+constexpr bool kSinglePose = std::is_same_v<T, double>;
 
 const MotionSample& DriveAt(const LoadModel& model, const Motion& motion, size_t pose, size_t k) {
   return motion.drives[pose * model.drives.size() + k];
@@ -90,18 +90,18 @@ template <typename T>
 void CloseAccelerations(const LoadModel& model, const Motion& motion, size_t pose,
                         LoadWorkspace<T>* ws) {
   const CoordinatePartition& partition = model.partition;
-  ForwardAccelerations<T>(model.tree, ws->v.data(), nullptr, &ws->tree);
+  VelocityProducts(model.tree, &ws->tree);
   LoopAccelerationBias(model.tree, &ws->tree);
   if (model.hand) {
     for (int v : partition.driven) ws->vdot[v] = T(0);
   }
   for (int v : partition.idle) ws->vdot[v] = T(0);
   ws->dependents.CompleteAccelerations(ws->tree, ws->vdot.data());
-  ForwardAccelerations<T>(model.tree, ws->v.data(), ws->vdot.data(), &ws->tree);
+  ForwardAccelerations(model.tree, ws->vdot.data(), &ws->tree);
   if constexpr (kSinglePose<T>) {
     if (!model.hand) return;
     HandAccelerations(model, motion.hand[pose], ws);
-    ForwardAccelerations<T>(model.tree, ws->v.data(), ws->vdot.data(), &ws->tree);
+    ForwardAccelerations(model.tree, ws->vdot.data(), &ws->tree);
   }
 }
 
@@ -162,28 +162,20 @@ void JointPositions(const LoadModel& model, const Motion& motion, size_t pose,
 }
 
 template <typename T>
-void ApplyAt(int node, const Wrench<T>& W, const Vector3<T>& p_W, LoadWorkspace<T>* ws) {
-  if (node >= 0) ws->applied[node] += W.ShiftedBy(p_W - ws->tree.nodes[node].X_WB.p);
-}
-
-template <typename T>
 void GatherApplied(const LoadModel& model, LoadWorkspace<T>* ws) {
-  for (Wrench<T>& w : ws->applied) w = Wrench<T>{};
+  for (ScrewT<T>& w : ws->applied) w = {};
+  const auto apply = [&](int node, const ScrewT<T>& W) {
+    if (node >= 0) ws->applied[node] += W;
+  };
   for (size_t i = 0; i < model.external.size(); ++i) {
-    const ExternalLoad& load = model.external[i];
-    const int node = model.tree.NodeOfLink(load.link);
-    if (node < 0) continue;
-    const Vector3d p_B = model.tree.nodes[node].X_BL * load.p_L;
-    const Vector3<T> p_W = ws->tree.nodes[node].X_WB * p_B.cast<T>();
-    ApplyAt(node, ws->external_W[i], p_W, ws);
+    apply(model.tree.NodeOfLink(model.external[i].link), ws->external[i]);
   }
   if (!model.has_passive) return;
   for (size_t l = 0; l < model.tree.loops.size(); ++l) {
-    const LoopState<T>& s = ws->tree.loops[l];
     const JointPlacement& place = model.tree.placements[model.tree.loops[l].joint];
-    const Wrench<T> W{s.R_WF * ws->cut_passive[l].force, s.R_WF * ws->cut_passive[l].moment};
-    ApplyAt(place.second_node, W, s.p_WM, ws);
-    ApplyAt(place.first_node, -W, s.p_WM, ws);
+    const ScrewT<T> W = WrenchFrom(ws->tree.loops[l].F, ws->cut_passive[l]);
+    apply(place.second_node, W);
+    apply(place.first_node, -1.0 * W);
   }
 }
 
@@ -192,19 +184,15 @@ template <typename T>
 void SolveReactions(const LoadModel& model, LoadWorkspace<T>* ws) {
   ws->open = ws->tau - ws->passive;
   TreeJointWrenches(model.tree, ws->tree, &ws->joints);
-  for (size_t l = 0; l < model.tree.loops.size(); ++l) {
-    const LoopState<T>& s = ws->tree.loops[l];
-    ws->joints[model.tree.loops[l].joint].W_M = {s.R_WF * ws->cut_passive[l].force,
-                                                 s.R_WF * ws->cut_passive[l].moment};
+  std::vector<LoopState<T>>& loops = ws->tree.loops;
+  const auto passive = [&](size_t l) { return WrenchFrom(loops[l].F, ws->cut_passive[l]); };
+  for (size_t l = 0; l < loops.size(); ++l) {
+    ws->joints[model.tree.loops[l].joint].W = passive(l);
   }
-  ws->reactions.Solve(ws->tree, ws->joints, ws->open.data(), ws->mu.data());
-  AddMultiplierWrenches(model.tree, ws->mu.data(), &ws->tree);
-  TreeJointWrenches(model.tree, ws->tree, &ws->joints);
-  for (size_t l = 0; l < model.tree.loops.size(); ++l) {
-    const Loop& loop = model.tree.loops[l];
-    const LoopState<T>& s = ws->tree.loops[l];
-    const Wrench<T> W_F = WrenchOfMultipliers(loop, s, ws->mu.data() + loop.row);
-    ws->joints[loop.joint].W_M += {s.R_WF * W_F.force, s.R_WF * W_F.moment};
+  ws->reactions.Solve(ws->joints, ws->open.data(), ws->mu.data());
+  ApplyMultipliers(model.tree, ws->mu.data(), &ws->tree, &ws->joints);
+  for (size_t l = 0; model.has_passive && l < loops.size(); ++l) {
+    ws->joints[model.tree.loops[l].joint].W += passive(l);
   }
 }
 
@@ -212,9 +200,7 @@ void SolveReactions(const LoadModel& model, LoadWorkspace<T>* ws) {
 template <typename T>
 void LoadTree(const LoadModel& model, LoadWorkspace<T>* ws) {
   GatherApplied(model, ws);
-  RecursiveNewtonEuler<T>(model.tree, model.tree.mechanism.gravity_W, ws->applied.data(),
-                          &ws->tree);
-  GeneralisedForces(model.tree, ws->tree, ws->tau.data());
+  NewtonEuler(model.tree, ws->inertias, ws->applied.data(), &ws->tree, ws->tau.data());
 }
 
 /// One pass from the friction under the joint wrenches of ws->loads to new joint wrenches there.
@@ -234,7 +220,7 @@ void EquilibriumPass(const LoadModel& model, LoadWorkspace<T>* ws) {
   }
   if (model.rule != ReactionRule::kPaperJoint) SolveReactions(model, ws);
   for (size_t j = 0; j < ws->joints.size(); ++j) {
-    ws->loads[j].W_F = ws->joints[j].W_M.In(ws->joints[j].R_WF);
+    ws->loads[j].W_F = WrenchIn(ws->joints[j].F, ws->joints[j].W);
   }
 }
 
@@ -262,18 +248,21 @@ void DriveForces(const LoadModel& model, LoadWorkspace<T>* ws) {
 
 /// Motion of a link's drawing frame, world axes.
 template <typename T>
-void StoreLinkMotion(const TreeNode& node, const NodeState<T>& s, int link, PoseLoads* poses) {
-  const Pose<T> X_WL = s.X_WB * node.X_BL.cast<T>();
-  const Vector3<T> r = X_WL.p - s.X_WB.p;
-  const Vector3<T> v = s.v + s.w.cross(r);
-  const Vector3<T> a = s.a + s.alpha.cross(r) + s.w.cross(s.w.cross(r));
+void StoreLinkMotion(const TreeNode& node, const TreeWorkspace<T>& tree, int index, int link,
+                     PoseLoads* poses) {
+  const typename TreeWorkspace<T>::Node& s = tree.at(index);
+  const FrameT<T> L = s.X * FrameOf<T>(node.X_BL);
+  const ScrewT<T> A = s.A - tree.at(-1).A;
+  const Triple<T> v = VelocityAt(L.p, s.V);
+  const Triple<T> a = VelocityAt(L.p, A) + Cross(s.V.angular, v);
+  const Pose<T> X = PoseOf(L);
   for (int lane = 0; lane < kLanesOf<T>; ++lane) {
     LinkMotion& motion = poses[lane].links[link];
-    motion.X_WL = {Lane(X_WL.R, lane), Lane(X_WL.p, lane)};
-    motion.v = Lane(v, lane);
-    motion.w = Lane(s.w, lane);
-    motion.a = Lane(a, lane);
-    motion.alpha = Lane(s.alpha, lane);
+    motion.X_WL = {Lane(X.R, lane), Lane(X.p, lane) + tree.reference};
+    motion.v = Lane(Vector3Of(v), lane);
+    motion.w = Lane(Vector3Of(s.V.angular), lane);
+    motion.a = Lane(Vector3Of(a), lane);
+    motion.alpha = Lane(Vector3Of(A.angular), lane);
   }
 }
 
@@ -306,6 +295,8 @@ bool EvaluatePoseLoads(const LoadModel& model, const Motion& motion, size_t pose
   if (model.has_dry_friction) FindContacts(model, motion, ws);
   CloseAccelerations(model, motion, pose, ws);
   EvaluateExternalLoads(model, motion, pose, ws);
+  BodyInertias(model.tree, ws->tree, &ws->inertias);
+  GyroscopicWrenches(model.tree, ws->inertias, &ws->tree);
   JointFrames(model.tree, ws->tree, &ws->joints);
   ws->reactions.Factor(ws->tree, ws->joints);
   FindEquilibrium(model, ws);
@@ -347,7 +338,7 @@ void StorePoseLoads(const LoadModel& model, const Motion& motion, size_t pose,
   for (size_t link = 0; link < poses[0].links.size(); ++link) {
     const int index = model.tree.NodeOfLink(static_cast<int>(link));
     if (index < 0) continue;
-    StoreLinkMotion(model.tree.nodes[index], ws.tree.nodes[index], static_cast<int>(link), poses);
+    StoreLinkMotion(model.tree.nodes[index], ws.tree, index, static_cast<int>(link), poses);
   }
   if constexpr (kSinglePose<T>) {
     if (!model.hand) return;

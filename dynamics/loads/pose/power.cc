@@ -3,16 +3,11 @@
 #include <cmath>
 
 #include "vmech/base/packet.h"
+#include "vmech/base/screw_algebra.h"
 #include "vmech/dynamics/loads/pose/hand_wrench.h"
-#include "vmech/kinematics/tree/jacobian.h"
 
 namespace vmech {
 namespace {
-
-template <typename T>
-T PowerOf(const Wrench<T>& W, const Vector6<T>& V) {
-  return W.force.dot(V.template head<3>()) + W.moment.dot(V.template tail<3>());
-}
 
 /// A sum and the sum of the magnitudes of its terms.
 template <typename T>
@@ -26,22 +21,24 @@ struct Balance {
   }
 };
 
+/// d/dt of kinetic energy and of height, body by body in its own figures: another sum than that of
+/// the forces.
 template <typename T>
 void SubtractEnergyRates(const LoadModel& model, const LoadWorkspace<T>& ws, Balance<T>* balance) {
-  const Vector3<T> gravity_W = model.tree.mechanism.gravity_W.cast<T>();
+  const Triple<T> gravity_W = TripleOf<T>(model.tree.mechanism.gravity_W);
   for (size_t i = 0; i < model.tree.nodes.size(); ++i) {
-    const TreeNode& node = model.tree.nodes[i];
-    if (node.link < 0) continue;
-    const NodeState<T>& s = ws.tree.nodes[i];
-    const Matrix3<T> I = node.I_Bcm.cast<T>();
-    const Vector3<T> c = s.X_WB.R * node.p_BoBcm.cast<T>();
-    const Vector3<T> v_cm = s.v + s.w.cross(c);
-    const Vector3<T> a_cm = s.a + s.alpha.cross(c) + s.w.cross(s.w.cross(c));
-    const Vector3<T> w_B = s.X_WB.R.transpose() * s.w;
-    const Vector3<T> alpha_B = s.X_WB.R.transpose() * s.alpha;
-    balance->Add(-node.mass * v_cm.dot(a_cm));
-    balance->Add(node.mass * v_cm.dot(gravity_W));
-    balance->Add(-w_B.dot(I * alpha_B));
+    if (model.tree.nodes[i].link < 0) continue;
+    const typename TreeWorkspace<T>::Node& s = ws.tree.nodes[i + 1];
+    const typename TreeInertias<T>::Body& body = ws.inertias.in_node[i + 1];
+    const ScrewT<T> A = s.A - ws.tree.at(-1).A;
+    const Triple<T> c = PointInWorld(s.X, body.p_BoBcm);
+    const Triple<T> v_cm = VelocityAt(c, s.V);
+    const Triple<T> a_cm = VelocityAt(c, A) + Cross(s.V.angular, v_cm);
+    const Triple<T> w_B = InverseRotate(s.X, s.V.angular), alpha_B = InverseRotate(s.X, A.angular);
+    const Triple<T> torque_B = alpha_B[0] * body.Ix + alpha_B[1] * body.Iy + alpha_B[2] * body.Iz;
+    balance->Add(-body.mass * Dot(v_cm, a_cm));
+    balance->Add(body.mass * Dot(v_cm, gravity_W));
+    balance->Add(-Dot(w_B, torque_B));
   }
 }
 
@@ -49,10 +46,7 @@ template <typename T>
 void AddExternalPower(const LoadModel& model, const LoadWorkspace<T>& ws, Balance<T>* balance) {
   for (size_t i = 0; i < model.external.size(); ++i) {
     const int node = model.tree.NodeOfLink(model.external[i].link);
-    if (node < 0) continue;
-    const Vector3d p_B = model.tree.nodes[node].X_BL * model.external[i].p_L;
-    const Vector3<T> p_W = ws.tree.nodes[node].X_WB * p_B.cast<T>();
-    balance->Add(PowerOf(ws.external_W[i], PointTwist(ws.tree, node, p_W)));
+    if (node >= 0) balance->Add(Power(ws.external[i], ws.tree.at(node).V));
   }
 }
 
@@ -60,11 +54,9 @@ template <typename T>
 void AddPassivePower(const LoadModel& model, const LoadWorkspace<T>& ws, Balance<T>* balance) {
   for (Eigen::Index v = 0; v < ws.passive.size(); ++v) balance->Add(ws.passive[v] * ws.v[v]);
   for (size_t l = 0; l < model.tree.loops.size(); ++l) {
-    const LoopState<T>& s = ws.tree.loops[l];
     const JointPlacement& place = model.tree.placements[model.tree.loops[l].joint];
-    const Wrench<T> W{s.R_WF * ws.cut_passive[l].force, s.R_WF * ws.cut_passive[l].moment};
-    balance->Add(PowerOf<T>(W, PointTwist(ws.tree, place.second_node, s.p_WM) -
-                                   PointTwist(ws.tree, place.first_node, s.p_WM)));
+    balance->Add(Power(WrenchFrom(ws.tree.loops[l].F, ws.cut_passive[l]),
+                       ws.tree.at(place.second_node).V - ws.tree.at(place.first_node).V));
   }
 }
 
@@ -77,10 +69,10 @@ void EvaluatePower(const LoadModel& model, LoadWorkspace<T>* ws) {
   for (size_t k = 0; k < model.drives.size(); ++k) {
     balance.Add(ws->drive_forces[k] * ws->v[model.partition.driven[k]]);
   }
-  if constexpr (kLanesOf<T> == 1) {
+  if constexpr (std::is_same_v<T, double>) {
     if (model.hand) {
-      const Posed X_WG = GraspPose(model, ws->tree);
-      balance.Add(PowerOf(ws->hand, PointTwist(ws->tree, GraspNode(model), X_WG.p)));
+      const GraspFrame grasp = HandGrasp(model);
+      balance.Add(ws->hand.Stacked().dot(GraspTwist(ws->tree, grasp.node, grasp.X_BG)));
     }
   }
   ws->power = balance.sum;
