@@ -8,6 +8,7 @@
 #include "vmech/dynamics/loads/load_result.h"
 #include "vmech/dynamics/loads/prepare_study.h"
 #include "vmech/dynamics/loads/track_motion.h"
+#include "vmech/dynamics/loads/pose/pose_loads.h"
 
 namespace vmech {
 namespace {

@@ -12,6 +12,7 @@
 #include "vmech/dynamics/loads/prepare_study.h"
 #include "vmech/dynamics/loads/run_load_study.h"
 #include "vmech/dynamics/loads/track_motion.h"
+#include "vmech/dynamics/loads/pose/pose_loads.h"
 
 namespace vmech {
 namespace {

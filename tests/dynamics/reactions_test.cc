@@ -12,6 +12,8 @@
 #include "vmech/dynamics/loads/load_result.h"
 #include "vmech/dynamics/loads/prepare_study.h"
 #include "vmech/dynamics/loads/run_load_study.h"
+#include "vmech/dynamics/loads/pose/pose_loads.h"
+#include "vmech/dynamics/loads/track_motion.h"
 
 namespace vmech {
 namespace {

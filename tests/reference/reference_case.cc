@@ -5,6 +5,7 @@
 #include "vmech/dynamics/loads/load_result.h"
 #include "vmech/dynamics/loads/prepare_study.h"
 #include "vmech/dynamics/loads/run_load_study.h"
+#include "vmech/dynamics/loads/pose/pose_loads.h"
 
 namespace vmech::reference {
 namespace {
