@@ -23,11 +23,11 @@ inline Vector3d Vector3Of(const Four& a) noexcept {
   return {a[0], a[1], a[2]};
 }
 template <typename T>
-const Vector3<T>& Vector3Of(const Vector3<T>& a) noexcept {
+inline const Vector3<T>& Vector3Of(const Vector3<T>& a) noexcept {
   return a;
 }
 template <typename T>
-Triple<T> ZeroTriple() noexcept {
+inline Triple<T> ZeroTriple() noexcept {
   if constexpr (std::is_same_v<T, double>) {
     return Four{};
   } else {
@@ -36,7 +36,7 @@ Triple<T> ZeroTriple() noexcept {
 }
 /// As the kernels of number T take it.
 template <typename T>
-Triple<T> TripleOf(const Vector3d& a) noexcept {
+inline Triple<T> TripleOf(const Vector3d& a) noexcept {
   if constexpr (std::is_same_v<T, double>) {
     return FourOf(a);
   } else {
@@ -44,7 +44,7 @@ Triple<T> TripleOf(const Vector3d& a) noexcept {
   }
 }
 template <typename T>
-Triple<T> TripleOf(const T& x, const T& y, const T& z) noexcept {
+inline Triple<T> TripleOf(const T& x, const T& y, const T& z) noexcept {
   if constexpr (std::is_same_v<T, double>) {
     return Four{x, y, z, 0};
   } else {
@@ -59,7 +59,8 @@ inline Four Cross(const Four& a, const Four& b) noexcept {
   return __builtin_shufflevector(zxy, zxy, 1, 2, 0, 3);
 }
 template <typename A, typename B>
-Vector3<typename A::Scalar> Cross(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
+inline Vector3<typename A::Scalar> Cross(const Eigen::MatrixBase<A>& a,
+                                         const Eigen::MatrixBase<B>& b) {
   return a.cross(b);
 }
 inline double Dot(const Four& a, const Four& b) noexcept {
@@ -67,7 +68,7 @@ inline double Dot(const Four& a, const Four& b) noexcept {
   return (ab[0] + ab[2]) + ab[1];
 }
 template <typename A, typename B>
-typename A::Scalar Dot(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
+inline typename A::Scalar Dot(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
   return a.dot(b);
 }
 inline double Length(const Four& a) noexcept {
@@ -76,11 +77,11 @@ inline double Length(const Four& a) noexcept {
 
 /// R a.
 template <typename T>
-Triple<T> Rotate(const FrameT<T>& X, const T& a0, const T& a1, const T& a2) noexcept {
+inline Triple<T> Rotate(const FrameT<T>& X, const T& a0, const T& a1, const T& a2) noexcept {
   return a0 * X.x + a1 * X.y + a2 * X.z;
 }
 template <typename T>
-Triple<T> Rotate(const FrameT<T>& X, const std::type_identity_t<Triple<T>>& a) noexcept {
+inline Triple<T> Rotate(const FrameT<T>& X, const std::type_identity_t<Triple<T>>& a) noexcept {
   return a[0] * X.x + a[1] * X.y + a[2] * X.z;
 }
 inline Four Rotate(const Frame& X, const Vector3d& a) noexcept {
@@ -97,18 +98,20 @@ inline Four InverseRotate(const Frame& X, const Four& a) noexcept {
   return __builtin_shufflevector(xy, z0, 0, 1, 4, 5) + __builtin_shufflevector(xy, z0, 2, 3, 6, 7);
 }
 template <typename T>
-Vector3<T> InverseRotate(const FrameT<T>& X, const std::type_identity_t<Vector3<T>>& a) noexcept {
+inline Vector3<T> InverseRotate(const FrameT<T>& X,
+                                const std::type_identity_t<Vector3<T>>& a) noexcept {
   return {X.x.dot(a), X.y.dot(a), X.z.dot(a)};
 }
 /// R A.
 template <typename T>
-FrameT<T> Rotate(const FrameT<T>& X, const Matrix3<T>& A, const Triple<T>& p) noexcept {
+inline FrameT<T> Rotate(const FrameT<T>& X, const Matrix3<T>& A, const Triple<T>& p) noexcept {
   return {Rotate(X, A(0, 0), A(1, 0), A(2, 0)), Rotate(X, A(0, 1), A(1, 1), A(2, 1)),
           Rotate(X, A(0, 2), A(1, 2), A(2, 2)), p};
 }
 /// X_WB p_B.
 template <typename T>
-Triple<T> PointInWorld(const FrameT<T>& X, const std::type_identity_t<Triple<T>>& p) noexcept {
+inline Triple<T> PointInWorld(const FrameT<T>& X,
+                              const std::type_identity_t<Triple<T>>& p) noexcept {
   return X.p + Rotate(X, p);
 }
 inline Four PointInWorld(const Frame& X, const Vector3d& p) noexcept {
@@ -116,7 +119,7 @@ inline Four PointInWorld(const Frame& X, const Vector3d& p) noexcept {
 }
 /// X_WB X_BC.
 template <typename T>
-FrameT<T> operator*(const FrameT<T>& X, const FrameT<T>& Y) noexcept {
+inline FrameT<T> operator*(const FrameT<T>& X, const FrameT<T>& Y) noexcept {
   return {Rotate(X, Y.x), Rotate(X, Y.y), Rotate(X, Y.z), X.p + Rotate(X, Y.p)};
 }
 inline Frame operator*(const Frame& X, const Posed& Y) noexcept {
@@ -136,7 +139,7 @@ inline Frame FrameOf(const Posed& X) noexcept {
 }
 /// As the kernels of number T take it.
 template <typename T>
-FrameT<T> FrameOf(const Posed& X) noexcept {
+inline FrameT<T> FrameOf(const Posed& X) noexcept {
   if constexpr (std::is_same_v<T, double>) {
     return FrameOf(X);
   } else {
@@ -153,13 +156,13 @@ inline Matrix3d RotationOf(const Frame& X) noexcept {
   return R;
 }
 template <typename T>
-Matrix3<T> RotationOf(const FrameT<T>& X) noexcept {
+inline Matrix3<T> RotationOf(const FrameT<T>& X) noexcept {
   Matrix3<T> R;
   R << X.x, X.y, X.z;
   return R;
 }
 template <typename T>
-Pose<T> PoseOf(const FrameT<T>& X) noexcept {
+inline Pose<T> PoseOf(const FrameT<T>& X) noexcept {
   return {RotationOf(X), Vector3Of(X.p)};
 }
 
@@ -167,32 +170,32 @@ inline Screw ScrewOf(const Vector6d& a) noexcept {
   return {FirstThree(Four{a[0], a[1], a[2], a[2]}), FirstThree(Four{a[3], a[4], a[5], a[5]})};
 }
 template <typename T>
-Vector6<T> Vector6Of(const ScrewT<T>& a) noexcept {
+inline Vector6<T> Vector6Of(const ScrewT<T>& a) noexcept {
   return {a.linear[0], a.linear[1], a.linear[2], a.angular[0], a.angular[1], a.angular[2]};
 }
 
 template <typename T>
-ScrewT<T>& operator+=(ScrewT<T>& a, const ScrewT<T>& b) noexcept {
+inline ScrewT<T>& operator+=(ScrewT<T>& a, const ScrewT<T>& b) noexcept {
   a.linear += b.linear;
   a.angular += b.angular;
   return a;
 }
 template <typename T>
-ScrewT<T>& operator-=(ScrewT<T>& a, const ScrewT<T>& b) noexcept {
+inline ScrewT<T>& operator-=(ScrewT<T>& a, const ScrewT<T>& b) noexcept {
   a.linear -= b.linear;
   a.angular -= b.angular;
   return a;
 }
 template <typename T>
-ScrewT<T> operator+(const ScrewT<T>& a, const ScrewT<T>& b) noexcept {
+inline ScrewT<T> operator+(const ScrewT<T>& a, const ScrewT<T>& b) noexcept {
   return {a.linear + b.linear, a.angular + b.angular};
 }
 template <typename T>
-ScrewT<T> operator-(const ScrewT<T>& a, const ScrewT<T>& b) noexcept {
+inline ScrewT<T> operator-(const ScrewT<T>& a, const ScrewT<T>& b) noexcept {
   return {a.linear - b.linear, a.angular - b.angular};
 }
 template <typename T>
-ScrewT<T> operator*(const std::type_identity_t<T>& s, const ScrewT<T>& a) noexcept {
+inline ScrewT<T> operator*(const std::type_identity_t<T>& s, const ScrewT<T>& a) noexcept {
   return {s * a.linear, s * a.angular};
 }
 
@@ -207,12 +210,13 @@ inline double Power(const Screw& wrench, const Screw& twist) noexcept {
   return (power[0] + power[2]) + power[1];
 }
 template <typename T>
-T Power(const ScrewT<T>& wrench, const ScrewT<T>& twist) noexcept {
+inline T Power(const ScrewT<T>& wrench, const ScrewT<T>& twist) noexcept {
   return Dot(wrench.linear, twist.linear) + Dot(wrench.angular, twist.angular);
 }
 /// The velocity of a point Q that moves with a twist.
 template <typename T>
-Triple<T> VelocityAt(const std::type_identity_t<Triple<T>>& p_WQ, const ScrewT<T>& twist) noexcept {
+inline Triple<T> VelocityAt(const std::type_identity_t<Triple<T>>& p_WQ,
+                            const ScrewT<T>& twist) noexcept {
   return twist.linear + Cross(twist.angular, p_WQ);
 }
 /// A wrench that is given about a point Q.
@@ -220,35 +224,35 @@ inline Screw WrenchAt(const Four& p_WQ, const Four& force, const Four& moment) n
   return {force, moment + Cross(p_WQ, force)};
 }
 template <typename T>
-ScrewT<T> WrenchAt(const Vector3<T>& p_WQ, const std::type_identity_t<Vector3<T>>& force,
-                   const std::type_identity_t<Vector3<T>>& moment) noexcept {
+inline ScrewT<T> WrenchAt(const Vector3<T>& p_WQ, const std::type_identity_t<Vector3<T>>& force,
+                          const std::type_identity_t<Vector3<T>>& moment) noexcept {
   return {force, moment + Cross(p_WQ, force)};
 }
 /// A wrench about the origin and in the axes of X.
 template <typename T>
-Wrench<T> WrenchIn(const FrameT<T>& X, const ScrewT<T>& W) noexcept {
+inline Wrench<T> WrenchIn(const FrameT<T>& X, const ScrewT<T>& W) noexcept {
   const Triple<T> moment = W.angular - Cross(X.p, W.linear);
   return {Vector3Of(InverseRotate(X, W.linear)), Vector3Of(InverseRotate(X, moment))};
 }
 /// One that is given there.
 template <typename T>
-ScrewT<T> WrenchFrom(const FrameT<T>& X, const Wrench<T>& W) noexcept {
+inline ScrewT<T> WrenchFrom(const FrameT<T>& X, const Wrench<T>& W) noexcept {
   return WrenchAt(X.p, Rotate(X, W.force[0], W.force[1], W.force[2]),
                   Rotate(X, W.moment[0], W.moment[1], W.moment[2]));
 }
 /// The rate at which a twist U changes that is carried along by a twist V.
 template <typename T>
-ScrewT<T> CarriedTwist(const ScrewT<T>& V, const ScrewT<T>& U) noexcept {
+inline ScrewT<T> CarriedTwist(const ScrewT<T>& V, const ScrewT<T>& U) noexcept {
   return {Cross(V.angular, U.linear) + Cross(V.linear, U.angular), Cross(V.angular, U.angular)};
 }
 /// The rate at which a wrench or a momentum changes that is carried along by a twist V.
 template <typename T>
-ScrewT<T> CarriedWrench(const ScrewT<T>& V, const ScrewT<T>& F) noexcept {
+inline ScrewT<T> CarriedWrench(const ScrewT<T>& V, const ScrewT<T>& F) noexcept {
   return {Cross(V.angular, F.linear), Cross(V.angular, F.angular) + Cross(V.linear, F.linear)};
 }
 
 template <typename T>
-ScrewInertiaT<T>& operator+=(ScrewInertiaT<T>& a, const ScrewInertiaT<T>& b) noexcept {
+inline ScrewInertiaT<T>& operator+=(ScrewInertiaT<T>& a, const ScrewInertiaT<T>& b) noexcept {
   a.mass += b.mass;
   a.moment += b.moment;
   a.Ix += b.Ix;
@@ -258,7 +262,7 @@ ScrewInertiaT<T>& operator+=(ScrewInertiaT<T>& a, const ScrewInertiaT<T>& b) noe
 }
 /// The momentum at a twist.
 template <typename T>
-ScrewT<T> operator*(const ScrewInertiaT<T>& I, const ScrewT<T>& V) noexcept {
+inline ScrewT<T> operator*(const ScrewInertiaT<T>& I, const ScrewT<T>& V) noexcept {
   const Triple<T>& w = V.angular;
   return {I.mass * V.linear + Cross(w, I.moment),
           w[0] * I.Ix + w[1] * I.Iy + w[2] * I.Iz + Cross(I.moment, V.linear)};

@@ -87,7 +87,7 @@ bool CoupledTick::GraspAt(const Posed& X_WH) noexcept {
     grasp.node = node;
     grasp.X_BG = X_BH;
   }
-  dynamics_.GraspAt(grasp_);
+  dynamics_.GraspAt(grasp);
   closing_.Open();
   fading_ += felt_;
   felt_ = {};
