@@ -36,11 +36,11 @@ inline Triple<T> ZeroTriple() noexcept {
 }
 /// As the kernels of number T take it.
 template <typename T>
-inline Triple<T> TripleOf(const Vector3d& a) noexcept {
+inline Triple<T> TripleOf(const std::type_identity_t<Vector3<T>>& a) noexcept {
   if constexpr (std::is_same_v<T, double>) {
     return FourOf(a);
   } else {
-    return a.cast<T>();
+    return a;
   }
 }
 template <typename T>
@@ -137,15 +137,9 @@ inline Frame FrameOf(const Posed& X) noexcept {
   return {FirstThree(from(0)), FirstThree(from(3)), FirstThree(from(6)),
           FirstThree(__builtin_shufflevector(p, p, 1, 2, 3, 0))};
 }
-/// As the kernels of number T take it.
 template <typename T>
-inline FrameT<T> FrameOf(const Posed& X) noexcept {
-  if constexpr (std::is_same_v<T, double>) {
-    return FrameOf(X);
-  } else {
-    return {TripleOf<T>(X.R.col(0)), TripleOf<T>(X.R.col(1)), TripleOf<T>(X.R.col(2)),
-            TripleOf<T>(X.p)};
-  }
+inline FrameT<T> FrameOf(const Pose<T>& X) noexcept {
+  return {X.R.col(0), X.R.col(1), X.R.col(2), X.p};
 }
 inline Matrix3d RotationOf(const Frame& X) noexcept {
   Matrix3d R;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vmech/base/dual.h"
 #include "vmech/base/packet.h"
 
 namespace vmech {
@@ -74,6 +75,7 @@ void EnvelopeLdlt<T>::Solve(T* x) const {
 }
 
 template class EnvelopeLdlt<double>;
+template class EnvelopeLdlt<Dual>;
 template class EnvelopeLdlt<Packet>;
 
 }  // namespace vmech

@@ -1,5 +1,6 @@
 #include "vmech/dynamics/reactions/joint_wrenches.h"
 
+#include "vmech/base/dual.h"
 #include "vmech/base/packet.h"
 #include "vmech/base/screw_algebra.h"
 #include "vmech/kinematics/loops/loops.h"
@@ -57,17 +58,18 @@ void ApplyMultipliers(const KinematicTree& tree, const T* mu, TreeWorkspace<T>* 
 }
 
 // NOLINTBEGIN(bugprone-macro-parentheses): T is a type
-#define VMECH_INSTANTIATE(T)                                                                     \
-  template void JointFrames<T>(const KinematicTree&, const TreeWorkspace<T>&,                    \
-                               std::vector<JointState<T>>*) noexcept;                            \
-  template void TreeJointWrenches<T>(const KinematicTree&, const TreeWorkspace<T>&,              \
-                                     std::vector<JointState<T>>*) noexcept;                      \
-  template void ApplyAlongBranch<T>(const KinematicTree&, int, const ScrewT<T>&,                 \
-                                    TreeWorkspace<T>*) noexcept;                                 \
-  template void ApplyAroundLoop<T>(const Loop&, const ScrewT<T>&, TreeWorkspace<T>*) noexcept;   \
-  template void ApplyMultipliers<T>(const KinematicTree&, const T*, TreeWorkspace<T>*,           \
+#define VMECH_INSTANTIATE(T)                                                                   \
+  template void JointFrames<T>(const KinematicTree&, const TreeWorkspace<T>&,                  \
+                               std::vector<JointState<T>>*) noexcept;                          \
+  template void TreeJointWrenches<T>(const KinematicTree&, const TreeWorkspace<T>&,            \
+                                     std::vector<JointState<T>>*) noexcept;                    \
+  template void ApplyAlongBranch<T>(const KinematicTree&, int, const ScrewT<T>&,               \
+                                    TreeWorkspace<T>*) noexcept;                               \
+  template void ApplyAroundLoop<T>(const Loop&, const ScrewT<T>&, TreeWorkspace<T>*) noexcept; \
+  template void ApplyMultipliers<T>(const KinematicTree&, const T*, TreeWorkspace<T>*,         \
                                     std::vector<JointState<T>>*) noexcept;
 VMECH_INSTANTIATE(double)
+VMECH_INSTANTIATE(Dual)
 VMECH_INSTANTIATE(Packet)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "vmech/base/dual.h"
 #include "vmech/base/packet.h"
 #include "vmech/base/screw_algebra.h"
 #include "vmech/kinematics/loops/loops.h"
@@ -10,8 +11,8 @@
 namespace vmech {
 namespace {
 
-/// Does a joint hold force (0..2) or moment (3..5) k, axes of F? A screw holds its travel: that goes
-/// with the turn.
+/// Does a joint hold force (0..2) or moment (3..5) k, axes of F? A screw holds its travel: that
+/// goes with the turn.
 bool Holds(JointType type, int k) {
   return !FreedomsOfType(type).free[k] || (type == JointType::kScrew && k == 2);
 }
@@ -197,6 +198,7 @@ void ReactionSolver<T>::Solve(const std::vector<JointState<T>>& joints, const T*
 }
 
 template class ReactionSolver<double>;
+template class ReactionSolver<Dual>;
 template class ReactionSolver<Packet>;
 
 }  // namespace vmech

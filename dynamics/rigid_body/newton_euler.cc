@@ -1,5 +1,6 @@
 #include "vmech/dynamics/rigid_body/newton_euler.h"
 
+#include "vmech/base/dual.h"
 #include "vmech/base/packet.h"
 #include "vmech/base/screw_algebra.h"
 
@@ -29,7 +30,8 @@ Screw MomentumOf(const TreeInertias<double>::Body& body, const Frame& X, const S
 template <typename T>
 void PropagateWrenches(const KinematicTree& tree, TreeWorkspace<T>* ws, T* tau) {
   ws->nodes[0].F = {};
-  ScrewT<T> sum;  // what this node gets from the next, in registers: a chain need not wait for memory
+  ScrewT<T>
+      sum;  // what this node gets from the next, in registers: a chain need not wait for memory
   for (int i = static_cast<int>(tree.nodes.size()); i-- > 0;) {
     const TreeNode& node = tree.nodes[i];
     sum += ws->at(i).F;
@@ -66,6 +68,10 @@ void AccumulateInertias(const KinematicTree& tree, TreeInertias<double>* inertia
 
 template <typename T>
 TreeInertias<T>::TreeInertias(const KinematicTree& tree)
+    : TreeInertias(tree, DesignOfTree<T>(tree)) {}
+
+template <typename T>
+TreeInertias<T>::TreeInertias(const KinematicTree& tree, const TreeDesign<T>& design)
     : in_node(tree.nodes.size() + 1),
       bodies(in_node.size()),
       composites(bodies),
@@ -74,9 +80,9 @@ TreeInertias<T>::TreeInertias(const KinematicTree& tree)
   const int n = tree.nv;
   for (int i = 0; i < static_cast<int>(tree.nodes.size()); ++i) {
     const TreeNode& node = tree.nodes[i];
-    const Matrix3d& I = node.I_Bcm;
-    in_node[i + 1] = {T(node.mass), TripleOf<T>(node.p_BoBcm), TripleOf<T>(I.col(0)),
-                      TripleOf<T>(I.col(1)), TripleOf<T>(I.col(2))};
+    const auto& [X_PF, X_BL, pitch, mass, p_BoBcm, I] = design.nodes[i];
+    in_node[i + 1] = {mass, TripleOf<T>(p_BoBcm), TripleOf<T>(I.col(0)), TripleOf<T>(I.col(1)),
+                      TripleOf<T>(I.col(2))};
     for (int v = node.v; v < node.v + VelocitiesOf(node.motion); ++v) {
       const auto add = [&](int u) { entries.push_back({i + 1, v, u, v * n + u, u * n + v}); };
       add(v);
@@ -92,7 +98,7 @@ TreeInertias<T>::TreeInertias(const KinematicTree& tree)
 
 template <typename T>
 void SetGravity(const Vector3d& gravity_W, TreeWorkspace<T>* ws) noexcept {
-  ws->at(-1).A.linear = TripleOf<T>(-gravity_W);
+  ws->at(-1).A.linear = TripleOf<T>(-gravity_W.cast<T>());
 }
 
 template <typename T>
@@ -196,17 +202,18 @@ VectorXd BiasForces(const KinematicTree& tree, const VectorXd& q, const VectorXd
 }
 
 // NOLINTBEGIN(bugprone-macro-parentheses): T is a type
-#define VMECH_INSTANTIATE(T)                                                                    \
-  template struct TreeInertias<T>;                                                              \
-  template void SetGravity<T>(const Vector3d&, TreeWorkspace<T>*) noexcept;                     \
-  template void BodyInertias<T>(const KinematicTree&, const TreeWorkspace<T>&,                  \
-                                TreeInertias<T>*) noexcept;                                     \
-  template void GyroscopicWrenches<T>(const KinematicTree&, const TreeInertias<T>&,             \
-                                      TreeWorkspace<T>*) noexcept;                              \
-  template void NewtonEuler<T>(const KinematicTree&, const TreeInertias<T>&, const ScrewT<T>*,  \
-                               TreeWorkspace<T>*, T*) noexcept;                                 \
+#define VMECH_INSTANTIATE(T)                                                                   \
+  template struct TreeInertias<T>;                                                             \
+  template void SetGravity<T>(const Vector3d&, TreeWorkspace<T>*) noexcept;                    \
+  template void BodyInertias<T>(const KinematicTree&, const TreeWorkspace<T>&,                 \
+                                TreeInertias<T>*) noexcept;                                    \
+  template void GyroscopicWrenches<T>(const KinematicTree&, const TreeInertias<T>&,            \
+                                      TreeWorkspace<T>*) noexcept;                             \
+  template void NewtonEuler<T>(const KinematicTree&, const TreeInertias<T>&, const ScrewT<T>*, \
+                               TreeWorkspace<T>*, T*) noexcept;                                \
   template void GeneralisedForces<T>(const KinematicTree&, const TreeWorkspace<T>&, T*) noexcept;
 VMECH_INSTANTIATE(double)
+VMECH_INSTANTIATE(Dual)
 VMECH_INSTANTIATE(Packet)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)

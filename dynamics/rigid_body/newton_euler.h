@@ -13,6 +13,8 @@ namespace vmech {
 template <typename T>
 struct TreeInertias {
   explicit TreeInertias(const KinematicTree& tree);
+  /// With other numbers than the tree's.
+  TreeInertias(const KinematicTree& tree, const TreeDesign<T>& design);
 
   /// As in TreeNode, axes of the node.
   struct Body {
@@ -35,8 +37,8 @@ struct TreeInertias {
   std::vector<Entry> entries;
 };
 
-/// Gravity is applied by giving the ground the acceleration -g, once, so that no body needs a weight
-/// of its own.
+/// Gravity is applied by giving the ground the acceleration -g, once, so that no body needs a
+/// weight of its own.
 template <typename T>
 void SetGravity(const Vector3d& gravity_W, TreeWorkspace<T>* ws) noexcept;
 
@@ -59,7 +61,8 @@ template <typename T>
 void GyroscopicWrenches(const KinematicTree& tree, const TreeInertias<T>& inertias,
                         TreeWorkspace<T>* ws) noexcept;
 /// Inverse dynamics by recursive Newton-Euler: F, what each parent must exert on its node for the
-/// bodies to move as they do against `applied`, the wrenches from outside on each node (null: none),
+/// bodies to move as they do against `applied`, the wrenches from outside on each node (null:
+/// none),
 ///
 ///   F_i = I_i A_i + p_i - applied_i + sum over children F_c,
 ///
@@ -79,8 +82,8 @@ void Momenta(const KinematicTree& tree, const TreeInertias<double>& inertias, co
 /// Kinetic energy at V [J].
 double KineticEnergy(const KinematicTree& tree, const TreeInertias<double>& inertias,
                      const TreeWorkspace<double>& ws) noexcept;
-/// - sum m g . p_cm [J], zero where every centre of gravity is at the height of the reference point.
-/// Needs BodyInertias.
+/// - sum m g . p_cm [J], zero where every centre of gravity is at the height of the reference
+/// point. Needs BodyInertias.
 double WeightEnergy(const KinematicTree& tree, const TreeInertias<double>& inertias) noexcept;
 
 /// M(q) [nv, nv].

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vmech/base/dual.h"
 #include "vmech/base/packet.h"
 #include "vmech/kinematics/loops/loops.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
@@ -198,6 +199,7 @@ T CloseByNewton(const KinematicTree& tree, double tolerance, int max_steps,
   template T CloseByNewton<T>(const KinematicTree&, double, int, DependentSolver<T>*,     \
                               TreeWorkspace<T>*, T*);
 VMECH_INSTANTIATE(double)
+VMECH_INSTANTIATE(Dual)
 VMECH_INSTANTIATE(Packet)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "vmech/base/dual.h"
 #include "vmech/base/packet.h"
 #include "vmech/base/screw_algebra.h"
 
@@ -43,7 +44,7 @@ T TurnAboutZ(const Matrix3<T>& R_FM) {
 
 /// The turn of a screw joint; whole turns are told by the travel.
 template <typename T>
-T ScrewTurn(const Matrix3<T>& R_FM, const T& travel, double pitch) {
+T ScrewTurn(const Matrix3<T>& R_FM, const T& travel, const T& pitch) {
   using std::round;
   constexpr double kTurn = 2 * std::numbers::pi;
   const T angle = TurnAboutZ(R_FM);
@@ -64,6 +65,15 @@ auto FacesBackwards(const Loop& loop, const LoopState<T>& state) {
     default:
       return state.R_FM(2, 2) < T(0);
   }
+}
+
+Vector3<Dual> RotationVector(const Matrix3<Dual>& R) {
+  const Vector3<Dual> sine =
+      0.5 * Vector3<Dual>(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));
+  const Dual cosine = 0.5 * (R.trace() - 1.0), square = sine.squaredNorm();
+  if (square.value == 0) return sine;
+  const Dual size = sqrt(square);
+  return atan2(size, cosine) / size * sine;
 }
 
 template <typename T>
@@ -109,7 +119,7 @@ void LoopError(const Loop& loop, const Matrix3<T>& R_FM, const Vector3<T>& p_FM,
   s.e2 = -ProjectOnRows<T>(loop, s, p_FM, ForbiddenRotation<T>(loop.type, R_FM));
   if (loop.type == JointType::kUniversal) s.e2[3] = -y_M.x();
   if (loop.type == JointType::kScrew) {
-    s.e2[4] = loop.pitch * ScrewTurn<T>(R_FM, p_FM.z(), loop.pitch) - p_FM.z();
+    s.e2[4] = s.pitch * ScrewTurn<T>(R_FM, p_FM.z(), s.pitch) - p_FM.z();
   }
 }
 
@@ -123,8 +133,7 @@ void LoopErrors(const KinematicTree& tree, TreeWorkspace<T>* ws) {
     s.F = ws->at(place.first_node).X * anchors.X_AF;
     const FrameT<T> M = ws->at(place.second_node).X * anchors.X_BM;
     const Triple<T> p_FM = InverseRotate(s.F, M.p - s.F.p);
-    const FrameT<T> R_FM{InverseRotate(s.F, M.x), InverseRotate(s.F, M.y),
-                         InverseRotate(s.F, M.z)};
+    const FrameT<T> R_FM{InverseRotate(s.F, M.x), InverseRotate(s.F, M.y), InverseRotate(s.F, M.z)};
     LoopError<T>(loop, RotationOf(R_FM), Vector3Of(p_FM), &s);
     s.F.p = M.p;
   }
@@ -149,7 +158,7 @@ void FindLoopWrenches(const Loop& loop, const FrameT<T>& turns, LoopState<T>* s)
     case JointType::kScrew:
       forces(F.x, F.y);
       moments(turns.x, turns.y);
-      *row = ForceAlong<T>(F.z, F.p) - loop.pitch * MomentAbout<T>(turns.z);
+      *row = ForceAlong<T>(F.z, F.p) - s->pitch * MomentAbout<T>(turns.z);
       return;
     case JointType::kUniversal:
       forces(F.x, F.y, F.z);
@@ -235,7 +244,7 @@ Wrenchd WrenchOfMultipliers(const Loop& loop, const LoopState<double>& state, co
     case JointType::kCylindrical:
       return {{mu[0], mu[1], zero}, {mu[2], mu[3], zero}};
     case JointType::kScrew:
-      return {{mu[0], mu[1], mu[4]}, {mu[2], mu[3], -loop.pitch * mu[4]}};
+      return {{mu[0], mu[1], mu[4]}, {mu[2], mu[3], -state.pitch * mu[4]}};
     case JointType::kUniversal:
       return {{mu[0], mu[1], mu[2]}, state.n_F * mu[3]};
     case JointType::kSpherical:
@@ -262,7 +271,7 @@ Vector3<T> CutJointCoordinates(const Loop& loop, const LoopState<T>& state) {
     case JointType::kCylindrical:
       return {p.z(), TurnAboutZ(R), zero};
     case JointType::kScrew:
-      return {ScrewTurn<T>(R, p.z(), loop.pitch), zero, zero};
+      return {ScrewTurn<T>(R, p.z(), state.pitch), zero, zero};
     case JointType::kUniversal:
       return {atan2(R(2, 1), R(1, 1)), atan2(R(0, 2), R(0, 0)), zero};
     case JointType::kSpherical:
@@ -294,7 +303,7 @@ CutJointFreedoms<T> FreedomsOfCutJoint(const Loop& loop, const LoopState<T>& sta
     case JointType::kCylindrical:
       return {2, {along(z), about(z)}};
     case JointType::kScrew:
-      return {1, {twist(loop.pitch * z, z)}};
+      return {1, {twist(state.pitch * z, z)}};
     case JointType::kUniversal:
       return {2, {about(x), about(state.R_FM.col(1))}};
     case JointType::kSpherical:
@@ -384,6 +393,7 @@ T LargestLoopError(const KinematicTree& tree, const TreeWorkspace<T>& ws) {
   template Vector3<T> CutJointRates<T>(const KinematicTree&, const TreeWorkspace<T>&, int);     \
   template T LargestLoopError<T>(const KinematicTree&, const TreeWorkspace<T>&);
 VMECH_INSTANTIATE(double)
+VMECH_INSTANTIATE(Dual)
 VMECH_INSTANTIATE(Packet)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)

@@ -126,7 +126,7 @@ Vector6<T> ProjectOnRows(const Loop& loop, const LoopState<T>& state, const Vect
     case JointType::kCylindrical:
       return {l[0], l[1], a[0], a[1], zero, zero};
     case JointType::kScrew:
-      return {l[0], l[1], a[0], a[1], l[2] - loop.pitch * a[2], zero};
+      return {l[0], l[1], a[0], a[1], l[2] - state.pitch * a[2], zero};
     case JointType::kUniversal:
       return {l[0], l[1], l[2], state.n_F.dot(a), zero, zero};
     case JointType::kSpherical:

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "vmech/base/dual.h"
 #include "vmech/base/packet.h"
 #include "vmech/base/screw_algebra.h"
 
@@ -81,9 +82,9 @@ void ForwardKinematics(const KinematicTree& tree, const T* q, TreeWorkspace<T>* 
         break;
       case NodeMotion::kScrew:
         X = X * RotateAboutZ(X_PF, *sine++, *cosine++);
-        X.p += (node.pitch * q[node.q]) * X.z;
+        X.p += (ws->at(i).pitch * q[node.q]) * X.z;
         *S = AxisThrough<T>(X.p, X.z);
-        S->linear += node.pitch * X.z;
+        S->linear += ws->at(i).pitch * X.z;
         break;
       case NodeMotion::kSpherical: {
         const Matrix3<T> R_FM = RotationOf(q + node.q);
@@ -217,13 +218,15 @@ Vector6d GraspAcceleration(const TreeWorkspace<double>& ws, int node, const Pose
 }
 
 // NOLINTBEGIN(bugprone-macro-parentheses): T is a type
-#define VMECH_INSTANTIATE(T)                                                                       \
-  template void ForwardKinematics<T>(const KinematicTree&, const T*, TreeWorkspace<T>*) noexcept;  \
-  template void ForwardVelocities<T>(const KinematicTree&, const T*, TreeWorkspace<T>*) noexcept;  \
-  template void VelocityProducts<T>(const KinematicTree&, TreeWorkspace<T>*) noexcept;             \
-  template void ForwardAccelerations<T>(const KinematicTree&, const T*, TreeWorkspace<T>*) noexcept; \
+#define VMECH_INSTANTIATE(T)                                                                      \
+  template void ForwardKinematics<T>(const KinematicTree&, const T*, TreeWorkspace<T>*) noexcept; \
+  template void ForwardVelocities<T>(const KinematicTree&, const T*, TreeWorkspace<T>*) noexcept; \
+  template void VelocityProducts<T>(const KinematicTree&, TreeWorkspace<T>*) noexcept;            \
+  template void ForwardAccelerations<T>(const KinematicTree&, const T*,                           \
+                                        TreeWorkspace<T>*) noexcept;                              \
   template void MoveCoordinates<T>(const KinematicTree&, const T*, T*);
 VMECH_INSTANTIATE(double)
+VMECH_INSTANTIATE(Dual)
 VMECH_INSTANTIATE(Packet)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)

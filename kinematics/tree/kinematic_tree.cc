@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "vmech/base/dual.h"
+#include "vmech/base/packet.h"
 #include "vmech/mechanisms/freedoms.h"
 #include "vmech/mechanisms/validity.h"
 
@@ -17,19 +19,10 @@ struct Elementary {
   int freedom;
 };
 
-Matrix3d ZAlong(int axis) {
-  // Cyclic permutations of the axes that bring z onto x or y.
-  Matrix3d R = Matrix3d::Zero();
-  R(axis, 2) = 1;
-  R((axis + 1) % 3, 0) = 1;
-  R((axis + 2) % 3, 1) = 1;
-  return R;
-}
-
 /// The elementary joints from the first anchor to the second.
 std::vector<Elementary> Decompose(JointType type) {
   using enum NodeMotion;
-  const Matrix3d x = ZAlong(0), y = ZAlong(1), z = ZAlong(2);
+  const Matrix3d x = ZOnto(0), y = ZOnto(1), z = ZOnto(2);
   switch (type) {
     case JointType::kRevolute:
       return {{kRevolute, z, 0}};
@@ -51,10 +44,6 @@ std::vector<Elementary> Decompose(JointType type) {
   return {};
 }
 
-Posed PureRotation(const Matrix3d& R) {
-  return {R, Vector3d::Zero()};
-}
-
 /// Builds the nodes of one tree branch after another.
 class Builder {
  public:
@@ -74,7 +63,6 @@ class Builder {
     if (reversed) Reverse(&chain);
 
     int parent = tree_.node_of_link[inboard.link];
-    Posed X_PF = LinkInNode(inboard.link) * tree_.mechanism.anchor(inboard).X_LA;
     for (const Elementary& e : chain) {
       TreeNode node;
       node.parent = parent;
@@ -82,26 +70,21 @@ class Builder {
       node.joint = branch.joint;
       node.reversed = reversed;
       node.freedom = e.freedom;
-      node.pitch = joint.pitch;
-      node.X_PF = X_PF * PureRotation(e.R_FE);
+      node.R_FE = e.R_FE;
       NumberCoordinates(&node);
       parent = static_cast<int>(tree_.nodes.size());
-      X_PF = PureRotation(e.R_FE.transpose());
       tree_.nodes.push_back(node);
     }
-    const Posed X_BA = PureRotation(chain.back().R_FE.transpose());
-    AttachLink(outboard.link, X_BA * tree_.mechanism.anchor(outboard).X_LA.inverse());
+    tree_.nodes.back().link = outboard.link;
+    tree_.node_of_link[outboard.link] = parent;
     tree_.placements[branch.joint].tree_node = parent;
   }
 
   void PlaceAnchors() {
     for (size_t j = 0; j < tree_.mechanism.joints.size(); ++j) {
       const Joint& joint = tree_.mechanism.joints[j];
-      JointPlacement& place = tree_.placements[j];
-      place.first_node = tree_.node_of_link[joint.first.link];
-      place.second_node = tree_.node_of_link[joint.second.link];
-      place.X_AF = LinkInNode(joint.first.link) * tree_.mechanism.anchor(joint.first).X_LA;
-      place.X_BM = LinkInNode(joint.second.link) * tree_.mechanism.anchor(joint.second).X_LA;
+      tree_.placements[j].first_node = tree_.node_of_link[joint.first.link];
+      tree_.placements[j].second_node = tree_.node_of_link[joint.second.link];
     }
   }
 
@@ -149,23 +132,100 @@ class Builder {
     tree_.nq += node->motion == NodeMotion::kSpherical ? 4 : 1;
   }
 
-  void AttachLink(int link, const Posed& X_BL) {
-    TreeNode& node = tree_.nodes.back();
-    const MassProperties& body = tree_.mechanism.links[link].mass_properties;
-    node.link = link;
-    node.X_BL = X_BL;
-    node.mass = body.mass;
-    node.p_BoBcm = X_BL * body.p_LoLcm;
-    node.I_Bcm = X_BL.R * body.I_Lcm * X_BL.R.transpose();
-    tree_.node_of_link[link] = static_cast<int>(tree_.nodes.size()) - 1;
-  }
-
-  Posed LinkInNode(int link) const { return tree_.X_node_link(link); }
-
   KinematicTree& tree_;
 };
 
+template <typename T>
+Pose<T> PureRotation(const Matrix3d& R) {
+  return {R.cast<T>(), Vector3<T>::Zero()};
+}
+
+void SetNumbers(const TreeDesign<double>& design, KinematicTree* tree) {
+  for (size_t i = 0; i < tree->nodes.size(); ++i) {
+    TreeNode& node = tree->nodes[i];
+    const TreeDesign<double>::NodeNumbers& numbers = design.nodes[i];
+    node.X_PF = numbers.X_PF;
+    node.X_BL = numbers.X_BL;
+    node.pitch = numbers.pitch;
+    node.mass = numbers.mass;
+    node.p_BoBcm = numbers.p_BoBcm;
+    node.I_Bcm = numbers.I_Bcm;
+  }
+  for (size_t j = 0; j < tree->placements.size(); ++j) {
+    tree->placements[j].X_AF = design.placements[j].X_AF;
+    tree->placements[j].X_BM = design.placements[j].X_BM;
+  }
+}
+
 }  // namespace
+
+template <typename T>
+Design<T> DesignOf(const Mechanism& mechanism) {
+  Design<T> design;
+  for (const Link& link : mechanism.links) {
+    const MassProperties& body = link.mass_properties;
+    design.links.push_back(
+        {T(body.mass), body.p_LoLcm.cast<T>(), body.I_Lcm.cast<T>(), std::vector<Pose<T>>()});
+    for (const Anchor& anchor : link.anchors) {
+      design.links.back().X_LA.push_back(anchor.X_LA.cast<T>());
+    }
+  }
+  for (const Joint& joint : mechanism.joints) design.pitches.push_back(T(joint.pitch));
+  return design;
+}
+
+// The chain of a joint leads from its inboard anchor, X_PF = X_BL X_LA R_FE, by turns of its axes,
+// R_FE' R_FE, to its outboard one, X_BL = R_FE' X_LA^-1.
+template <typename T>
+TreeDesign<T> DesignOfTree(const KinematicTree& tree, const Design<T>& design) {
+  TreeDesign<T> placed;
+  const auto anchor = [&](const AnchorId& id) -> const Pose<T>& {
+    return design.links[id.link].X_LA[id.anchor];
+  };
+  const auto in_node = [&](const AnchorId& id) {
+    const int node = tree.NodeOfLink(id.link);
+    return node < 0 ? anchor(id) : placed.nodes[node].X_BL * anchor(id);
+  };
+  for (const TreeNode& node : tree.nodes) {
+    const Joint& joint = tree.mechanism.joints[node.joint];
+    const AnchorId& inboard = node.reversed ? joint.second : joint.first;
+    const AnchorId& outboard = node.reversed ? joint.first : joint.second;
+    const bool first = node.parent < 0 || tree.nodes[node.parent].joint != node.joint;
+    typename TreeDesign<T>::NodeNumbers numbers;
+    numbers.pitch = design.pitches[node.joint];
+    numbers.X_PF =
+        (first ? in_node(inboard) : PureRotation<T>(tree.nodes[node.parent].R_FE.transpose())) *
+        PureRotation<T>(node.R_FE);
+    if (node.link >= 0) {
+      const auto& link = design.links[node.link];
+      numbers.X_BL = PureRotation<T>(node.R_FE.transpose()) * anchor(outboard).inverse();
+      numbers.mass = link.mass;
+      numbers.p_BoBcm = numbers.X_BL * link.p_LoLcm;
+      numbers.I_Bcm = numbers.X_BL.R * link.I_Lcm * numbers.X_BL.R.transpose();
+    }
+    placed.nodes.push_back(numbers);
+  }
+  for (size_t j = 0; j < tree.mechanism.joints.size(); ++j) {
+    const Joint& joint = tree.mechanism.joints[j];
+    placed.placements.push_back({in_node(joint.first), in_node(joint.second), design.pitches[j]});
+  }
+  return placed;
+}
+
+template <typename T>
+TreeDesign<T> DesignOfTree(const KinematicTree& tree) {
+  TreeDesign<T> design;
+  for (const TreeNode& node : tree.nodes) {
+    design.nodes.push_back({node.X_PF.cast<T>(), node.X_BL.cast<T>(), T(node.pitch), T(node.mass),
+                            node.p_BoBcm.cast<T>(), node.I_Bcm.cast<T>()});
+  }
+  for (size_t j = 0; j < tree.placements.size(); ++j) {
+    const JointPlacement& place = tree.placements[j];
+    design.placements.push_back(
+        {place.X_AF.cast<T>(), place.X_BM.cast<T>(), T(tree.mechanism.joints[j].pitch)});
+  }
+  return design;
+}
 
 Posed KinematicTree::X_node_link(int link) const {
   const int node = node_of_link[link];
@@ -180,7 +240,8 @@ KinematicTree BuildKinematicTree(Mechanism mechanism, const SpanningTreeOptions&
   Builder builder(&tree);
   for (const SpanningTree::Branch& branch : tree.spanning.branches) builder.AddBranch(branch);
   builder.PlaceAnchors();
-    for (int joint : tree.spanning.cuts) builder.AddLoop(joint);
+  SetNumbers(DesignOfTree(tree, DesignOf<double>(tree.mechanism)), &tree);
+  for (int joint : tree.spanning.cuts) builder.AddLoop(joint);
   tree.reference = CentroidOfGround(tree);
   return tree;
 }
@@ -251,5 +312,16 @@ int CoordinateIndex(const KinematicTree& tree, int joint, int freedom) {
   }
   return -1;
 }
+
+// NOLINTBEGIN(bugprone-macro-parentheses): T is a type
+#define VMECH_INSTANTIATE(T)                                                      \
+  template Design<T> DesignOf<T>(const Mechanism&);                               \
+  template TreeDesign<T> DesignOfTree<T>(const KinematicTree&, const Design<T>&); \
+  template TreeDesign<T> DesignOfTree<T>(const KinematicTree&);
+VMECH_INSTANTIATE(double)
+VMECH_INSTANTIATE(Dual)
+VMECH_INSTANTIATE(Packet)
+#undef VMECH_INSTANTIATE
+// NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace vmech

@@ -34,7 +34,9 @@ struct TreeNode {
   int v = -1;             ///< first index in v
   int freedom = 0;        ///< which freedom of the joint this is
   double pitch = 0;       ///< kScrew [m/rad]
-  Posed X_PF;             ///< where the node is in its parent when its coordinate is zero
+  /// Axes of the elementary joint in the frame of the joint, which z of this node is along.
+  Matrix3d R_FE = Matrix3d::Identity();
+  Posed X_PF;  ///< where the node is in its parent when its coordinate is zero
 
   int link = -1;  ///< the link that moves with this node; -1 for a node between freedoms
   Posed X_BL;     ///< the link's drawing frame in the node
@@ -97,6 +99,44 @@ struct KinematicTree {
   std::vector<int> node_of_link;
   Posed X_node_link(int link) const;  ///< the link's drawing frame in its node
 };
+
+/// The numbers of a mechanism that its topology leaves open. T is double, or Dual to take the
+/// derivative by one of them along.
+template <typename T>
+struct Design {
+  struct LinkNumbers {
+    T mass;
+    Vector3<T> p_LoLcm;
+    Matrix3<T> I_Lcm;
+    std::vector<Pose<T>> X_LA;  ///< anchors
+  };
+  std::vector<LinkNumbers> links;
+  std::vector<T> pitches;  ///< of joints
+};
+template <typename T>
+Design<T> DesignOf(const Mechanism& mechanism);
+
+/// The same as nodes and placements have them: the fields of these names there.
+template <typename T>
+struct TreeDesign {
+  struct NodeNumbers {
+    Pose<T> X_PF, X_BL;
+    T pitch = T(0), mass = T(0);
+    Vector3<T> p_BoBcm = Vector3<T>::Zero();
+    Matrix3<T> I_Bcm = Matrix3<T>::Zero();
+  };
+  struct PlacementNumbers {
+    Pose<T> X_AF, X_BM;
+    T pitch;
+  };
+  std::vector<NodeNumbers> nodes;
+  std::vector<PlacementNumbers> placements;
+};
+template <typename T>
+TreeDesign<T> DesignOfTree(const KinematicTree& tree, const Design<T>& design);
+/// From the fields of the tree.
+template <typename T>
+TreeDesign<T> DesignOfTree(const KinematicTree& tree);
 
 /// @throws std::invalid_argument as FindSpanningTree.
 KinematicTree BuildKinematicTree(Mechanism mechanism, const SpanningTreeOptions& options = {});

@@ -1,5 +1,6 @@
 #include "vmech/kinematics/tree/tree_workspace.h"
 
+#include "vmech/base/dual.h"
 #include "vmech/base/packet.h"
 #include "vmech/base/screw_algebra.h"
 
@@ -7,16 +8,27 @@ namespace vmech {
 
 template <typename T>
 TreeWorkspace<T>::TreeWorkspace(const KinematicTree& tree)
+    : TreeWorkspace(tree, DesignOfTree<T>(tree)) {}
+
+template <typename T>
+TreeWorkspace<T>::TreeWorkspace(const KinematicTree& tree, const TreeDesign<T>& design)
     : reference(tree.reference),
       nodes(tree.nodes.size() + 1),
       S(tree.nv),
       loops(tree.loops.size()),
       sine(PaddedSize(static_cast<int>(tree.revolute_coordinates.size()))),
       cosine(sine) {
-  at(-1).X.p = TripleOf<T>(-reference);
-  for (size_t i = 0; i < tree.nodes.size(); ++i) nodes[i + 1].X_PF = FrameOf<T>(tree.nodes[i].X_PF);
-  for (const JointPlacement& place : tree.placements) {
-    placements.push_back({FrameOf<T>(place.X_AF), FrameOf<T>(place.X_BM)});
+  at(-1).X.p = TripleOf<T>(-reference.cast<T>());
+  for (size_t i = 0; i < tree.nodes.size(); ++i) {
+    nodes[i + 1].X_PF = FrameOf(design.nodes[i].X_PF);
+    nodes[i + 1].X_BL = FrameOf(design.nodes[i].X_BL);
+    nodes[i + 1].pitch = design.nodes[i].pitch;
+  }
+  for (const typename TreeDesign<T>::PlacementNumbers& place : design.placements) {
+    placements.push_back({FrameOf(place.X_AF), FrameOf(place.X_BM)});
+  }
+  for (size_t l = 0; l < tree.loops.size(); ++l) {
+    loops[l].pitch = design.placements[tree.loops[l].joint].pitch;
   }
   int columns = 0;
   for (const Loop& loop : tree.loops) {
@@ -27,6 +39,7 @@ TreeWorkspace<T>::TreeWorkspace(const KinematicTree& tree)
 }
 
 template struct TreeWorkspace<double>;
+template struct TreeWorkspace<Dual>;
 template struct TreeWorkspace<Packet>;
 
 }  // namespace vmech

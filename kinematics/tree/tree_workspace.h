@@ -10,6 +10,7 @@ namespace vmech {
 /// The state of one loop. F and M are the anchors of the cut joint on its first and second link.
 template <typename T>
 struct LoopState {
+  T pitch = T(0);   ///< kScrew [m/rad]
   FrameT<T> F;      ///< axes of F at the origin of M
   Matrix3<T> R_FM;  ///< M in F
   Vector3<T> p_FM;
@@ -27,16 +28,20 @@ struct LoopState {
 template <typename T>
 struct TreeWorkspace {
   explicit TreeWorkspace(const KinematicTree& tree);
+  /// With other numbers than the tree's.
+  TreeWorkspace(const KinematicTree& tree, const TreeDesign<T>& design);
 
   /// Node i is at i + 1; the ground comes first.
   struct Node {
-    FrameT<T> X_PF;  ///< of the tree
-    FrameT<T> X;     ///< pose; its z axis is that of the node's elementary joint
-    ScrewT<T> V;     ///< twist
-    ScrewT<T> c;     ///< velocity product: what A would be if the parent's A and v' were zero
-    ScrewT<T> A;     ///< rate of V; that of the ground is the caller's (SetGravity)
-    ScrewT<T> p;     ///< velocity product: what F would be if A were zero
-    ScrewT<T> F;     ///< what the parent exerts on this node
+    FrameT<T> X_PF;  ///< as in TreeNode
+    FrameT<T> X_BL;
+    T pitch = T(0);
+    FrameT<T> X;  ///< pose; its z axis is that of the node's elementary joint
+    ScrewT<T> V;  ///< twist
+    ScrewT<T> c;  ///< velocity product: what A would be if the parent's A and v' were zero
+    ScrewT<T> A;  ///< rate of V; that of the ground is the caller's (SetGravity)
+    ScrewT<T> p;  ///< velocity product: what F would be if A were zero
+    ScrewT<T> F;  ///< what the parent exerts on this node
   };
   /// Where the anchors of a joint are: as in JointPlacement.
   struct Placement {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vmech/base/dual.h"
 #include "vmech/base/packet.h"
 
 namespace vmech {
@@ -215,6 +216,7 @@ std::array<UnaccountedLoad, 2> UnaccountedLoads(const Joint& joint, const Wrench
   template Vector3<T> SlidingRates<T>(JointType, const Vector3<T>&, double, double);       \
   template Vector3<T> SlidingFriction<T>(JointType, const Vector3<T>&, const Vector3<T>&);
 VMECH_INSTANTIATE(double)
+VMECH_INSTANTIATE(Dual)
 VMECH_INSTANTIATE(Packet)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vmech/base/dual.h"
 #include "vmech/base/packet.h"
 #include "vmech/base/screw_algebra.h"
 
@@ -60,16 +61,18 @@ void EvaluateExternalLoads(const LoadModel& model, const Motion& motion, size_t 
     }
     const int node = model.tree.NodeOfLink(load.link);
     if (node < 0) continue;
-    const FrameT<T> L = ws->tree.at(node).X * FrameOf<T>(model.tree.nodes[node].X_BL);
+    const FrameT<T> L = ws->tree.at(node).X * ws->tree.at(node).X_BL;
     FrameT<T> at;
     if (load.axes == ExternalLoad::Axes::kLink) at = L;
-    at.p = PointInWorld(L, TripleOf<T>(load.p_L));
+    at.p = PointInWorld(L, TripleOf<T>(load.p_L.cast<T>()));
     ws->external[i] = WrenchFrom(at, W);
   }
 }
 
 template void EvaluateExternalLoads<double>(const LoadModel&, const Motion&, size_t,
                                             LoadWorkspace<double>*);
+template void EvaluateExternalLoads<Dual>(const LoadModel&, const Motion&, size_t,
+                                          LoadWorkspace<Dual>*);
 template void EvaluateExternalLoads<Packet>(const LoadModel&, const Motion&, size_t,
                                             LoadWorkspace<Packet>*);
 

@@ -1,16 +1,21 @@
 #include "vmech/dynamics/loads/pose/load_workspace.h"
 
+#include "vmech/base/dual.h"
 #include "vmech/base/packet.h"
 
 namespace vmech {
 
 template <typename T>
 LoadWorkspace<T>::LoadWorkspace(const LoadModel& model)
-    : tree(model.tree),
+    : LoadWorkspace(model, DesignOfTree<T>(model.tree)) {}
+
+template <typename T>
+LoadWorkspace<T>::LoadWorkspace(const LoadModel& model, const TreeDesign<T>& design)
+    : tree(model.tree, design),
       dependents(model.tree, model.partition),
       reactions(model.tree, model.partition, model.compliances),
       joints(model.tree.mechanism.joints.size()),
-      inertias(model.tree),
+      inertias(model.tree, design),
       applied(model.tree.nodes.size()),
       cut_passive(model.tree.loops.size()),
       sliding(joints.size(), Vector3<T>::Zero()),
@@ -33,6 +38,7 @@ LoadWorkspace<T>::LoadWorkspace(const LoadModel& model)
 }
 
 template struct LoadWorkspace<double>;
+template struct LoadWorkspace<Dual>;
 template struct LoadWorkspace<Packet>;
 
 }  // namespace vmech

@@ -19,12 +19,15 @@ struct RestingContact {
 };
 
 /// Memory for one thread, for one model that must outlive it. T is double for one pose at a time,
-/// or Packet for four in a row.
+/// Packet for four in a row, or Dual for one and its derivative.
 template <typename T>
 struct LoadWorkspace {
   using VectorX = Eigen::Matrix<T, Eigen::Dynamic, 1>;
 
   explicit LoadWorkspace(const LoadModel& model);
+  /// With other numbers than the model's: a Dual that has slopes in some takes the derivative of
+  /// every load by them along.
+  LoadWorkspace(const LoadModel& model, const TreeDesign<T>& design);
 
   TreeWorkspace<T> tree;
   DependentSolver<T> dependents;

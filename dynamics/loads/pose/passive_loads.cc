@@ -1,5 +1,6 @@
 #include "vmech/dynamics/loads/pose/passive_loads.h"
 
+#include "vmech/base/dual.h"
 #include "vmech/base/packet.h"
 #include "vmech/dynamics/loads/pose/contact_friction.h"
 #include "vmech/dynamics/rigid_body/passive.h"
@@ -65,6 +66,7 @@ int LockingJoint(const LoadModel& model, const LoadWorkspace<double>& ws, bool s
   template void PassiveForces<T>(const LoadModel&, LoadWorkspace<T>*); \
   template void SpreadPassive<T>(const LoadModel&, LoadWorkspace<T>*);
 VMECH_INSTANTIATE(double)
+VMECH_INSTANTIATE(Dual)
 VMECH_INSTANTIATE(Packet)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)

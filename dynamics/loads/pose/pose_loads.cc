@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vmech/base/dual.h"
 #include "vmech/base/packet.h"
 #include "vmech/base/screw_algebra.h"
 #include "vmech/dynamics/loads/load_result.h"
@@ -23,15 +24,15 @@ namespace {
 /// The rotation vector of a unit quaternion (w, x, y, z).
 template <typename T>
 Vector3<T> RotationVector(const T* wxyz) {
-  Vector3<T> turn;
-  Vector3d lanes[kLanesOf<T>];
-  for (int lane = 0; lane < kLanesOf<T>; ++lane) {
-    const Eigen::AngleAxisd rotation(Eigen::Quaterniond(Lane(wxyz[0], lane), Lane(wxyz[1], lane),
-                                                        Lane(wxyz[2], lane), Lane(wxyz[3], lane)));
-    lanes[lane] = rotation.angle() * rotation.axis();
-  }
-  for (int k = 0; k < 3; ++k) turn[k] = FromLanes<T>([&](int lane) { return lanes[lane][k]; });
-  return turn;
+  using std::atan2;
+  using std::sqrt;
+  const T sign = Select(wxyz[0] < T(0), T(-1), T(1));  // the shorter way round
+  const Vector3<T> xyz = sign * Vector3<T>(wxyz[1], wxyz[2], wxyz[3]);
+  const T w = sign * wxyz[0], sine2 = xyz.squaredNorm();
+  constexpr double kSmall = 1e-16;  // squared: there the series has the same digits
+  const T sine = sqrt(Select(sine2 < T(kSmall), T(1), sine2));
+  const T per_sine = Select(sine2 < T(kSmall), T(2.0), 2.0 * atan2(sine, w) / sine);
+  return per_sine * xyz;
 }
 
 template <typename T>
@@ -46,6 +47,14 @@ void GatherCoordinates(const Motion& motion, size_t pose, LoadWorkspace<T>* ws) 
   for (Eigen::Index i = 0; i < ws->q.size(); ++i) {
     ws->q[i] = FromLanes<T>([&](int lane) { return motion.q(pose + lane)[i]; });
   }
+}
+
+/// How the closed pose goes along with the numbers of the design: one step of Newton's, which at a
+/// closed pose moves slopes alone (implicit differentiation, C dq = e2).
+void CloseSlopes(const LoadModel& model, LoadWorkspace<Dual>* ws) {
+  ws->dependents.StepCoordinates(ws->tree, ws->q.data());
+  EvaluatePose(model.tree, ws->q.data(), &ws->tree);
+  ws->dependents.Factor(ws->tree);
 }
 
 /// What the drives prescribe.
@@ -158,6 +167,10 @@ void JointPositions(const LoadModel& model, const Motion& motion, size_t pose,
       joint.position[k] = FromLanes<T>(
           [&](int lane) { return motion.cut_positions[(pose + lane) * loops + l][k]; });
     }
+    if constexpr (std::is_same_v<T, Dual>) {
+      const Vector3<T> here = CutJointCoordinates(model.tree.loops[l], ws->tree.loops[l]);
+      for (int k = 0; k < 3; ++k) joint.position[k].slope = here[k].slope;
+    }
   }
 }
 
@@ -248,10 +261,9 @@ void DriveForces(const LoadModel& model, LoadWorkspace<T>* ws) {
 
 /// Motion of a link's drawing frame, world axes.
 template <typename T>
-void StoreLinkMotion(const TreeNode& node, const TreeWorkspace<T>& tree, int index, int link,
-                     PoseLoads* poses) {
+void StoreLinkMotion(const TreeWorkspace<T>& tree, int index, int link, PoseLoads* poses) {
   const typename TreeWorkspace<T>::Node& s = tree.at(index);
-  const FrameT<T> L = s.X * FrameOf<T>(node.X_BL);
+  const FrameT<T> L = s.X * s.X_BL;
   const ScrewT<T> A = s.A - tree.at(-1).A;
   const Triple<T> v = VelocityAt(L.p, s.V);
   const Triple<T> a = VelocityAt(L.p, A) + Cross(s.V.angular, v);
@@ -282,6 +294,7 @@ bool EvaluatePoseLoads(const LoadModel& model, const Motion& motion, size_t pose
   GatherCoordinates(motion, pose, ws);
   EvaluatePose(model.tree, ws->q.data(), &ws->tree);
   ws->dependents.Factor(ws->tree);
+  if constexpr (std::is_same_v<T, Dual>) CloseSlopes(model, ws);
   if (!AllLanes(ws->dependents.smallest_pivot() > T(0))) return false;
   ws->closure = LargestLoopError(model.tree, ws->tree);
   if constexpr (kSinglePose<T>) {
@@ -338,7 +351,7 @@ void StorePoseLoads(const LoadModel& model, const Motion& motion, size_t pose,
   for (size_t link = 0; link < poses[0].links.size(); ++link) {
     const int index = model.tree.NodeOfLink(static_cast<int>(link));
     if (index < 0) continue;
-    StoreLinkMotion(model.tree.nodes[index], ws.tree, index, static_cast<int>(link), poses);
+    StoreLinkMotion(ws.tree, index, static_cast<int>(link), poses);
   }
   if constexpr (kSinglePose<T>) {
     if (!model.hand) return;
@@ -355,6 +368,8 @@ void StorePoseLoads(const LoadModel& model, const Motion& motion, size_t pose,
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Packet)
 #undef VMECH_INSTANTIATE
+template bool EvaluatePoseLoads<Dual>(const LoadModel&, const Motion&, size_t,
+                                      LoadWorkspace<Dual>*);
 // NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace vmech

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "vmech/base/dual.h"
 #include "vmech/base/packet.h"
 #include "vmech/base/screw_algebra.h"
 #include "vmech/dynamics/loads/pose/hand_wrench.h"
@@ -25,7 +26,7 @@ struct Balance {
 /// the forces.
 template <typename T>
 void SubtractEnergyRates(const LoadModel& model, const LoadWorkspace<T>& ws, Balance<T>* balance) {
-  const Triple<T> gravity_W = TripleOf<T>(model.tree.mechanism.gravity_W);
+  const Triple<T> gravity_W = TripleOf<T>(model.tree.mechanism.gravity_W.cast<T>());
   for (size_t i = 0; i < model.tree.nodes.size(); ++i) {
     if (model.tree.nodes[i].link < 0) continue;
     const typename TreeWorkspace<T>::Node& s = ws.tree.nodes[i + 1];
@@ -84,6 +85,7 @@ void EvaluatePower(const LoadModel& model, LoadWorkspace<T>* ws) {
 }
 
 template void EvaluatePower<double>(const LoadModel&, LoadWorkspace<double>*);
+template void EvaluatePower<Dual>(const LoadModel&, LoadWorkspace<Dual>*);
 template void EvaluatePower<Packet>(const LoadModel&, LoadWorkspace<Packet>*);
 
 }  // namespace vmech

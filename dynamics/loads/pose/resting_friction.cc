@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vmech/base/dual.h"
 #include "vmech/base/linear_algebra/linear_algebra.h"
 #include "vmech/base/packet.h"
 #include "vmech/dynamics/loads/pose/contact_friction.h"
@@ -144,7 +145,7 @@ void FindContacts(const LoadModel& model, const Motion& motion, LoadWorkspace<T>
     if (!HasDryFriction(joint)) continue;
     ws->sliding[j] =
         SlidingRates(joint.type, ws->loads[j].rate, kRest * motion.speed, model.tree.length);
-    if constexpr (kLanesOf<T> == 1) AddRestingContacts(model, j, ws);
+    if constexpr (std::is_same_v<T, double>) AddRestingContacts(model, j, ws);
   }
   ws->holding.setZero(ws->creep.cols());
   for (RestingContact& contact : ws->resting) {
@@ -169,6 +170,7 @@ void HoldByFriction(const LoadModel& model, LoadWorkspace<double>* ws) {
 }
 
 template void FindContacts<double>(const LoadModel&, const Motion&, LoadWorkspace<double>*);
+template void FindContacts<Dual>(const LoadModel&, const Motion&, LoadWorkspace<Dual>*);
 template void FindContacts<Packet>(const LoadModel&, const Motion&, LoadWorkspace<Packet>*);
 
 }  // namespace vmech
