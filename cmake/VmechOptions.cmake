@@ -7,6 +7,7 @@ option(VMECH_LINT "run clang-format, clang-tidy and the text rules as tests"
        ${PROJECT_IS_TOP_LEVEL})
 option(VMECH_WARNINGS_AS_ERRORS "treat warnings as errors" OFF)
 option(VMECH_FORBID_MALLOC "make Eigen assert on allocations where they are forbidden" OFF)
+option(VMECH_POISON "let tests fill with NaN what a call makes stale (base/poison.h)" OFF)
 option(VMECH_REQUIRE_PACKAGES "fail where a package is absent, rather than leave out what needs it"
        OFF)
 option(VMECH_BUILD_FUZZERS "build the fuzz targets; needs clang" OFF)

@@ -16,6 +16,7 @@
 #include "vmech/hw_interface/masters/spacenav_master.h"
 #include "vmech/hw_interface/remote/udp_master.h"
 #include "vmech/hw_interface/rendering/coupling_choice.h"
+#include "vmech/hw_interface/rendering/hand_motion.h"
 #include "vmech/hw_interface/safety/stability.h"
 #include "vmech/mechanisms/files/document.h"
 #include "vmech/mechanisms/files/reader.h"
@@ -42,19 +43,6 @@ std::optional<std::string> Behind(const std::string& word, std::string_view mark
   return word.substr(mark.size());
 }
 
-/// Where a hand in the world is for the simulated operator.
-HandMotion InDeviceAxes(const HandLaw& law, const Registration& registration) {
-  return [law, registration](double time) {
-    const HandSample hand = law.At(time);
-    const Matrix3d R_DW = registration.X_WD.R.transpose();
-    HandTargetMotion target;
-    target.X_DT = registration.X_WD.inverse() * hand.X_WH;
-    target.X_DT.R *= registration.R_HK.transpose();
-    target.V_DT << R_DW * hand.V_WH.head<3>(), R_DW * hand.V_WH.tail<3>();
-    return target;
-  };
-}
-
 /// Moment on the gripper [N m]: closes after half a second, opens for a second every four.
 double SqueezeWithPauses(double time) {
   constexpr double kFirm = 0.4;
@@ -71,7 +59,7 @@ std::unique_ptr<Master> MakeSimulated(const MasterRequest& request) {
   const Posed X_DH =
       ArmModel(std::make_shared<const ArmDescription>(SarcosMasterArm(options.hand.mass))).X_DH();
   options.motion = request.law
-                       ? InDeviceAxes(*request.law, GraspedAt(request.R_WD, X_DH, request.X_WG))
+                       ? HandMotionOf(*request.law, GraspedAt(request.R_WD, X_DH, request.X_WG))
                        : Wander(X_DH, kReach, kTurn, 1);
   if (request.gripper) options.squeeze = SqueezeWithPauses;
   return std::make_unique<SimulatedMaster>(options);
@@ -115,7 +103,7 @@ Rendering MakeCoupled(const RenderingRequest& request, const KinematicTree& tree
 Rendering MakePaper(const RenderingRequest& request, const KinematicTree& tree, int grasp,
                     const VectorXd& q, const DeviceInfo& device) {
   MechanismTickOptions options;
-  options.law = LawFor(device, request.stiffness);
+  options.law = ContactLawFor(device, request.stiffness);
   options.inertia = request.inertia > 0
                         ? request.inertia
                         : StableInertiaShare(tree, GraspFrameOf(tree, grasp), q, device);
@@ -216,30 +204,6 @@ void WriteHandMotion(const std::filesystem::path& file, const Recording& recordi
   if (!out.flush()) {
     throw FileErrors(file.string(), "cannot be written; give another place with --motion");
   }
-}
-
-ContactLaw LawFor(const DeviceInfo& device, double stiffness) {
-  constexpr double kNoForce = 1000;  // [N/m]
-  constexpr double kLever = 0.05;    // [m], of a hand
-  ContactLaw law;
-  if (!device.takes_wrench && !device.takes_torque) {
-    law.stiffness.head<3>().setConstant(kNoForce);
-    law.stiffness.tail<3>().setConstant(kNoForce * kLever * kLever);
-    return law;
-  }
-  RenderingGains wanted;
-  wanted.stiffness.setConstant(std::numeric_limits<double>::max());
-  law.stiffness = LimitedGains(device, wanted).stiffness;
-  // A device that does not state its damping: soft, and watched by the passivity controller.
-  if (device.linear.damping == 0) law.stiffness.head<3>().setConstant(kNoForce / 4);
-  if (device.angular.damping == 0) {
-    law.stiffness.tail<3>() = kLever * kLever * law.stiffness.head<3>();
-  }
-  if (stiffness > 0 && stiffness < law.stiffness[0]) {
-    law.stiffness.tail<3>() *= stiffness / law.stiffness[0];
-    law.stiffness.head<3>().setConstant(stiffness);
-  }
-  return law;
 }
 
 }  // namespace vmech

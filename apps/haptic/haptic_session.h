@@ -64,11 +64,6 @@ std::unique_ptr<Master> MakeMaster(const MasterRequest& request);
 void WriteHandMotion(const std::filesystem::path& file, const Recording& recording,
                      const Matrix3d& R_WD, const Posed& X_WG);
 
-/// Stiffness and law of the constraint for a device: its own bounds, or the wanted stiffness if
-/// that is lower. A device without force gets a stiffness that only weighs positions against
-/// rotations.
-ContactLaw LawFor(const DeviceInfo& device, double stiffness);
-
 /// How a mechanism is rendered; zeros leave it to the device.
 struct RenderingRequest {
   std::string coupling = "virtual";   ///< or "paper"

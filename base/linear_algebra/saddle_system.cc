@@ -169,7 +169,7 @@ bool SaddleSystem::Factor(const MatrixXd& A) noexcept {
 void SaddleSystem::Solve(const MatrixXd& A, const MatrixXd& C, const VectorXd& b, const VectorXd& d,
                          VectorXd* x) noexcept {
   const int n = size();
-  if (equations_ == 0) return Approach(C, b, d, x);
+  if (equations_ == 0) return SolveOnce(C, b, d, x);
   kernels_.add_transposed(weight_, C.data(), equations_, d.data(), b.data(), n, right_.data());
   kernels_.iterate(L_.data(), A.data(), b.data(), right_.data(), n, scratch_.data(), total_.data(),
                    x->data());
@@ -181,8 +181,8 @@ void SaddleSystem::ComputeMultipliers(const MatrixXd& C, const VectorXd& d,
                     mu->data());
 }
 
-void SaddleSystem::Approach(const MatrixXd& C, const VectorXd& b, const VectorXd& d,
-                            VectorXd* x) noexcept {
+void SaddleSystem::SolveOnce(const MatrixXd& C, const VectorXd& b, const VectorXd& d,
+                             VectorXd* x) noexcept {
   const int n = size();
   std::copy_n(b.data(), n, x->data());
   if (equations_ > 0) {

@@ -39,7 +39,7 @@ class SaddleSystem {
   void ComputeMultipliers(const MatrixXd& C, const VectorXd& d, VectorXd* mu) const noexcept;
   /// Writes what the first of the solves gives: x as near to C x = d as A over w C'C is to zero,
   /// and for b = 0 the smallest such x in the metric of A.
-  void Approach(const MatrixXd& C, const VectorXd& b, const VectorXd& d, VectorXd* x) noexcept;
+  void SolveOnce(const MatrixXd& C, const VectorXd& b, const VectorXd& d, VectorXd* x) noexcept;
 
   // For what has as many unknowns.
   /// A += B'B, B [8, unknowns].

@@ -1,22 +1,13 @@
 #pragma once
 
-#include <limits>
 #include <vector>
 
-#include "vmech/base/linear_algebra/saddle_system.h"
-#include "vmech/dynamics/in_hand/grasped_mechanism.h"
+#include "vmech/dynamics/in_hand/closing_step.h"
+#include "vmech/dynamics/in_hand/energy_limit.h"
+#include "vmech/dynamics/in_hand/passive_joints.h"
+#include "vmech/dynamics/in_hand/virtual_coupling.h"
 
 namespace vmech {
-
-/// Spring and damper between a hand and the grasp frame, diagonal, world axes. Beyond the largest
-/// force and moment the spring slips along, in its direction: the mechanism never gets more than
-/// the device can give the hand.
-struct HandCoupling {
-  Vector6d stiffness = Vector6d::Zero();                        ///< K [N/m], [N m/rad], >= 0
-  Vector6d damping = Vector6d::Zero();                          ///< B [N s/m], [N m s/rad], >= 0
-  double max_force = std::numeric_limits<double>::infinity();   ///< [N], > 0
-  double max_moment = std::numeric_limits<double>::infinity();  ///< [N m], > 0
-};
 
 /// What a step of CoupledDynamics came to.
 enum class CoupledStatus {
@@ -51,11 +42,8 @@ class CoupledDynamics {
   void Stop() noexcept;
   /// Held at another frame of the same kind, or again after LetGo.
   void GraspAt(const GraspFrame& grasp) noexcept;
-  /// Nobody holds it: the coupling exerts nothing until Grasp.
-  void LetGo() noexcept {
-    coupled_ = false;
-    spring_ = 0;
-  }
+  /// Nobody holds it: the coupling exerts nothing until GraspAt.
+  void LetGo() noexcept;
   /// A step with the hand at X_WH, moving with V_WH [v; w] at Ho, world axes; or with its frame in
   /// W.
   [[nodiscard]] CoupledStatus Step(const Posed& X_WH, const Vector6d& V_WH) noexcept;
@@ -67,81 +55,53 @@ class CoupledDynamics {
   Posed X_WG() const noexcept { return pose_.X_WG(); }
   /// HandError of the hand [6; m, rad].
   Vector6d e1() const noexcept;
-  const Screw& stretch() const noexcept { return e1_; }  ///< the same
+  const Screw& stretch() const noexcept { return coupling_.e1(); }  ///< the same
   const GraspedMechanism& pose() const noexcept { return pose_; }
   Vector6d V_WG() const noexcept;  ///< of Go, world axes [v; w]
   /// Hand on mechanism during the step, at Go, world axes: what the coupling pulls.
   Vector6d w() const noexcept;
-  const Screw& pull() const noexcept { return w_; }  ///< the same
+  const Screw& pull() const noexcept { return coupling_.w(); }  ///< the same
   /// Every joint's wrench during the step, as HandDynamics::joints.
   const std::vector<Wrenchd>& joints() const noexcept { return joints_; }
   /// Kinetic energy, weight, springs of joints and coupling [J].
-  double Energy() const noexcept { return kinetic_ + potential_ + spring_; }
-  double closure() const noexcept;                      ///< norm of the loop errors, lengths over L
-  bool at_limit() const noexcept { return at_limit_; }  ///< a joint stands at a limit
-  bool slipping() const noexcept { return slipping_; }  ///< the coupling is at its largest wrench
+  double Energy() const noexcept { return kinetic_ + potential_ + coupling_.energy(); }
+  double closure() const noexcept { return closing_.closure(); }   ///< loop errors, lengths over L
+  bool at_limit() const noexcept { return passive_.at_limit(); }   ///< a joint stands at one
+  bool slipping() const noexcept { return coupling_.slipping(); }  ///< it is at its largest wrench
 
  private:
-  /// A coordinate of its own with a spring, friction or limits.
-  struct Freedom {
-    int q, v;
-    Passive passive;
-    double lower, upper;
-    int sliding;      // the same for all freedoms of one sliding contact
-    int contact = 0;  // -1 at the lower limit, 1 at the upper
-  };
-
-  /// HandCoupling in whole registers.
-  struct Coupling {
-    Coupling(const HandCoupling& coupling, double step);
-    Screw stiffness, damping;
-    Screw root_gain;  ///< (B + T K)^1/2
-    double max_force, max_moment;
-  };
-
   enum class Solving { kFully, kRoughly };
 
-  void ListFreedoms();
   void AddRegularisation();
   void BiasForces() noexcept;
   void BuildSystem() noexcept;
-  void AddPassive() noexcept;
   void AddCoupling() noexcept;
+  bool SolveStep() noexcept;
   bool SolveWithLimits(Solving how) noexcept;
   bool SolveVelocity(Solving how) noexcept;
-  void AddLimits() noexcept;
   bool Slip() noexcept;
-  bool ChangeContacts() noexcept;
   void FindWrenches() noexcept;
   CoupledStatus Move() noexcept;
-  bool Close() noexcept;
-  void PredictClosure() noexcept;
   void UpdateInertia() noexcept;
   void UpdateVelocities() noexcept;
-  void UpdateError() noexcept;
+  void Stretch() noexcept;
   void LimitEnergyGain(double before) noexcept;
 
   const KinematicTree& tree_;
-  Coupling coupling_;
   double T_;
   GraspedMechanism pose_;
+  VirtualCoupling coupling_;
+  PassiveJoints passive_;
   SaddleSystem system_;
+  ClosingStep closing_;
+  EnergyLimit energy_limit_;
   MatrixXd M_, A_, limited_A_, rootKJ_;
-  VectorXd q_, v_, next_q_, next_v_, vdot_, momenta_, bias_, right_, limited_right_, x_,
-      correction_, rest_, mu_, d_, predicted_defect_;
-  VectorXd last_closure_defect_;  // by which the last step's aim failed
-  VectorXd regularisation_;       // of every freedom [as M/T]: holds those without inertia
+  VectorXd q_, v_, next_q_, next_v_, vdot_, momenta_, bias_, right_, limited_right_, mu_, d_;
+  VectorXd regularisation_;  // of every freedom [as M/T]: holds those without inertia
   std::vector<Wrenchd> joints_;
-  std::vector<Freedom> freedoms_;
   MovingFrame hand_;
-  Screw e1_, w_;
-  double squared_closure_ = 0;
   double kinetic_ = 0, potential_ = 0;  // without the coupling's [J]
-  double spring_ = 0;                   // of the coupling [J]
-  double lost_ = 0;                     // energy that steps may give back [J]
-  bool slipping_ = false;
   bool coupled_ = true;
-  bool at_limit_ = false;
 };
 
 }  // namespace vmech

@@ -145,25 +145,4 @@ double GraspedMechanism::KineticEnergy() const noexcept {
   return vmech::KineticEnergy(tree_, inertias_, ws_);
 }
 
-void RefuseUnrenderedFriction(const KinematicTree& tree) {
-  for (const Joint& joint : tree.mechanism.joints) {
-    if (joint.load_friction.coefficient == 0) continue;
-    throw std::invalid_argument(fmt::format(
-        "joint '{}': friction in proportion to the load is not rendered to a hand; give "
-        "it `coulomb` or `viscous` friction",
-        joint.name));
-  }
-  for (const Loop& loop : tree.loops) {
-    const Joint& joint = tree.mechanism.joints[loop.joint];
-    if (std::none_of(joint.passive.begin(), joint.passive.end(), IsPassive)) continue;
-    throw std::invalid_argument(
-        fmt::format("joint '{}' is cut, but has a spring or friction; name another joint in `cuts`",
-                    joint.name));
-  }
-}
-
-bool IsPassive(const Passive& passive) {
-  return passive.stiffness != 0 || passive.viscous != 0 || passive.coulomb != 0;
-}
-
 }  // namespace vmech

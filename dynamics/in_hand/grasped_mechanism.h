@@ -71,20 +71,10 @@ class GraspedMechanism {
   TreeWorkspace<double> ws_;
   TreeInertias<double> inertias_;
   std::vector<JointState<double>> joints_;
-  Frame G_;                // about the reference point
+  Frame G_;               // about the reference point
   std::vector<Screw> J_;  // columns
   MatrixXd C_;
   VectorXd e2_;
 };
-
-/// Friction in proportion to a joint's load, and springs or friction at a cut joint, are beyond
-/// these paths. @throws std::invalid_argument naming the joint.
-void RefuseUnrenderedFriction(const KinematicTree& tree);
-
-/// Does this freedom have a spring or friction?
-bool IsPassive(const Passive& passive);
-
-/// Dry friction builds up in proportion to the speed until here [m/s] or [rad/s].
-inline constexpr double kSlowSliding = 1e-2;
 
 }  // namespace vmech

@@ -9,6 +9,7 @@
 #include "vmech/base/linear_algebra/linear_algebra.h"
 #include "vmech/base/linear_algebra/small_ldlt.h"
 #include "vmech/base/screw_algebra.h"
+#include "vmech/dynamics/in_hand/passive_joints.h"
 #include "vmech/dynamics/loads/pose/contact_friction.h"
 #include "vmech/dynamics/loads/pose/idle_freedoms.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"

@@ -137,4 +137,28 @@ double StableInertiaShare(const KinematicTree& tree, const GraspFrame& grasp, co
   return ratio > 0 ? std::min(1.0, 0.4 / ratio) : 1;
 }
 
+ContactLaw ContactLawFor(const DeviceInfo& device, double stiffness) {
+  constexpr double kNoForce = 1000;  // [N/m]
+  constexpr double kLever = 0.05;    // [m], of a hand
+  ContactLaw law;
+  if (!device.takes_wrench && !device.takes_torque) {
+    law.stiffness.head<3>().setConstant(kNoForce);
+    law.stiffness.tail<3>().setConstant(kNoForce * kLever * kLever);
+    return law;
+  }
+  RenderingGains wanted;
+  wanted.stiffness.setConstant(std::numeric_limits<double>::max());
+  law.stiffness = LimitedGains(device, wanted).stiffness;
+  // A device that does not state its damping: soft, and watched by the passivity controller.
+  if (device.linear.damping == 0) law.stiffness.head<3>().setConstant(kNoForce / 4);
+  if (device.angular.damping == 0) {
+    law.stiffness.tail<3>() = kLever * kLever * law.stiffness.head<3>();
+  }
+  if (stiffness > 0 && stiffness < law.stiffness[0]) {
+    law.stiffness.tail<3>() *= stiffness / law.stiffness[0];
+    law.stiffness.head<3>().setConstant(stiffness);
+  }
+  return law;
+}
+
 }  // namespace vmech

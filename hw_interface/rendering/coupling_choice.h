@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vmech/dynamics/in_hand/coupled_dynamics.h"
+#include "vmech/hw_interface/rendering/contact_law.h"
 #include "vmech/hw_interface/safety/safety_filter.h"
 
 namespace vmech {
@@ -42,5 +43,10 @@ double InertiaRatio(const KinematicTree& tree, const GraspFrame& grasp, const Ve
 /// device that states no masses.
 double StableInertiaShare(const KinematicTree& tree, const GraspFrame& grasp, const VectorXd& q,
                           const DeviceInfo& device);
+
+/// Stiffness and law of the constraint for a device: its own bounds, or the wanted stiffness if
+/// that is lower. A device without force gets a stiffness that only weighs positions against
+/// rotations.
+ContactLaw ContactLawFor(const DeviceInfo& device, double stiffness);
 
 }  // namespace vmech

@@ -223,6 +223,7 @@ void LoopBias(const KinematicTree& tree, const TreeWorkspace<T>& ws, int loop_in
 template <typename T>
 void LoopAccelerationBias(const KinematicTree& tree, TreeWorkspace<T>* ws) {
   for (size_t l = 0; l < tree.loops.size(); ++l) {
+    ws->loops[l].bias.setZero();  // behind the last of the rows, too
     LoopBias(tree, *ws, static_cast<int>(l), 1, ws->loops[l].bias.data());
   }
 }

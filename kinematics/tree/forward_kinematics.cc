@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "vmech/base/dual.h"
 #include "vmech/base/packet.h"
+#include "vmech/base/poison.h"
 #include "vmech/base/screw_algebra.h"
 
 namespace vmech {
@@ -33,6 +35,41 @@ void SinesAndCosines(const KinematicTree& tree, const double* q,
   }
 }
 
+template <typename T>
+ScrewT<T> StaleScrew() {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const Triple<T> stale = TripleOf<T>(T(nan), T(nan), T(nan));
+  return {stale, stale};
+}
+
+/// What hangs on accelerations.
+template <typename T>
+void PoisonForces(TreeWorkspace<T>* ws) {
+  if (!PoisonsStale()) return;
+  for (size_t i = 1; i < ws->nodes.size(); ++i) ws->nodes[i].F = StaleScrew<T>();
+}
+
+/// What hangs on velocities.
+template <typename T>
+void PoisonAccelerations(TreeWorkspace<T>* ws) {
+  if (!PoisonsStale()) return;
+  PoisonForces(ws);
+  for (size_t i = 1; i < ws->nodes.size(); ++i) {
+    auto& node = ws->nodes[i];
+    node.c = node.A = node.p = StaleScrew<T>();
+  }
+  for (LoopState<T>& loop : ws->loops) loop.bias = Vector6Of(StaleScrew<T>());
+}
+
+/// What hangs on the pose; but C, with which a chord step goes on from an earlier one.
+template <typename T>
+void PoisonMotion(TreeWorkspace<T>* ws) {
+  if (!PoisonsStale()) return;
+  PoisonAccelerations(ws);
+  for (size_t i = 1; i < ws->nodes.size(); ++i) ws->nodes[i].V = StaleScrew<T>();
+  for (LoopState<T>& loop : ws->loops) loop.e2 = Vector6Of(StaleScrew<T>());
+}
+
 /// X Rz.
 template <typename T>
 FrameT<T> RotateAboutZ(const FrameT<T>& X, const T& sine, const T& cosine) {
@@ -58,6 +95,7 @@ ScrewT<T> JointTwist(const TreeNode& node, const T* v, const TreeWorkspace<T>& w
 
 template <typename T>
 void ForwardKinematics(const KinematicTree& tree, const T* q, TreeWorkspace<T>* ws) noexcept {
+  PoisonMotion(ws);
   SinesAndCosines(tree, q, ws);
   const T *sine = ws->sine.data(), *cosine = ws->cosine.data();
   FrameT<T> X = ws->at(-1).X;
@@ -102,6 +140,7 @@ void ForwardKinematics(const KinematicTree& tree, const T* q, TreeWorkspace<T>* 
 
 template <typename T>
 void ForwardVelocities(const KinematicTree& tree, const T* v, TreeWorkspace<T>* ws) noexcept {
+  PoisonAccelerations(ws);
   ScrewT<T> V;
   for (int i = 0; i < static_cast<int>(tree.nodes.size()); ++i) {
     const TreeNode& node = tree.nodes[i];
@@ -113,6 +152,7 @@ void ForwardVelocities(const KinematicTree& tree, const T* v, TreeWorkspace<T>* 
 
 template <typename T>
 void VelocityProducts(const KinematicTree& tree, TreeWorkspace<T>* ws) noexcept {
+  PoisonForces(ws);
   ScrewT<T> A = ws->at(-1).A;
   for (int i = 0; i < static_cast<int>(tree.nodes.size()); ++i) {
     const typename TreeWorkspace<T>::Node& parent = ws->at(tree.nodes[i].parent);
@@ -127,6 +167,7 @@ void VelocityProducts(const KinematicTree& tree, TreeWorkspace<T>* ws) noexcept 
 
 template <typename T>
 void ForwardAccelerations(const KinematicTree& tree, const T* vdot, TreeWorkspace<T>* ws) noexcept {
+  PoisonForces(ws);
   ScrewT<T> A = ws->at(-1).A;
   for (int i = 0; i < static_cast<int>(tree.nodes.size()); ++i) {
     const TreeNode& node = tree.nodes[i];

@@ -1,4 +1,5 @@
 #include "vmech/mechanisms/freedoms.h"
+#include "vmech/mechanisms/mechanism.h"
 
 #include <gtest/gtest.h>
 

@@ -62,7 +62,7 @@ TEST_P(EverySize, MultipliersAreTheSmallest) {
 TEST_P(EverySize, ApproachMakesUpForWhatTheConstraintsAsk) {
   s_.saddle.SetConstraints(s_.C);
   ASSERT_TRUE(s_.saddle.Factor(s_.A));
-  s_.saddle.Approach(s_.C, VectorXd::Zero(GetParam()), s_.d, &x_);
+  s_.saddle.SolveOnce(s_.C, VectorXd::Zero(GetParam()), s_.d, &x_);
   constexpr double kOneSolve = 1e-3;  // A over w C'C where C moves least
   EXPECT_LT((s_.C * x_ - s_.d).norm(), kOneSolve * s_.d.norm());
 }

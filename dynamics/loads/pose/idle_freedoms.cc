@@ -94,6 +94,8 @@ void SettleIdleFreedoms(const LoadModel& model, LoadWorkspace<double>* ws) {
   };
   ws->vdot -= ws->idle_motions * SolveAboveFloor(IdleInertia(model, ws), open(), model.no_inertia);
   ForwardVelocities(model.tree, ws->v.data(), &ws->tree);
+  VelocityProducts(model.tree, &ws->tree);
+  GyroscopicWrenches(model.tree, ws->inertias, &ws->tree);
   ForwardAccelerations(model.tree, ws->vdot.data(), &ws->tree);
   NewtonEuler(model.tree, ws->inertias, ws->applied.data(), &ws->tree, ws->tau.data());
   ws->unresisted = open().cwiseAbs().maxCoeff();

@@ -1,0 +1,120 @@
+#include "vmech/dynamics/in_hand/passive_joints.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "vmech/dynamics/loads/pose/contact_friction.h"
+
+namespace vmech {
+namespace {
+
+/// A limit's stiffness over what it has to hold.
+constexpr double kHardLimit = 1e4;
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+PassiveJoints::PassiveJoints(const KinematicTree& tree) {
+  RefuseUnrenderedFriction(tree);
+  for (const TreeNode& node : tree.nodes) {
+    if (node.v < 0 || node.motion == NodeMotion::kSpherical) continue;
+    const Joint& joint = tree.mechanism.joints[node.joint];
+    const bool alone = joint.type == JointType::kUniversal;  // two pins, each slides for itself
+    const Freedom freedom{node.q,
+                          node.v,
+                          joint.passive[node.freedom],
+                          joint.lower[node.freedom],
+                          joint.upper[node.freedom],
+                          3 * node.joint + (alone ? node.freedom : 0)};
+    if (HasPassive(freedom.passive) || freedom.lower > -kNoLimit || freedom.upper < kNoLimit) {
+      freedoms_.push_back(freedom);
+    }
+  }
+}
+
+void PassiveJoints::AddTo(const VectorXd& q, const VectorXd& v, double step, MatrixXd* A,
+                          VectorXd* right) const noexcept {
+  for (size_t first = 0, end = 0; first < freedoms_.size(); first = end) {
+    double square = 0;
+    for (; end < freedoms_.size() && freedoms_[end].contact == freedoms_[first].contact; ++end) {
+      const double power = freedoms_[end].passive.coulomb * v[freedoms_[end].v];
+      square += power * power;
+    }
+    const double power = std::sqrt(square);
+    for (size_t i = first; i < end; ++i) {
+      const Freedom& f = freedoms_[i];
+      const double dry = FrictionDamping(f.passive.coulomb, power, kSlowSliding);
+      (*A)(f.v, f.v) += step * f.passive.stiffness + f.passive.viscous + dry;
+      (*right)[f.v] -= f.passive.stiffness * (q[f.q] - f.passive.rest);
+    }
+  }
+}
+
+double PassiveJoints::Energy(const VectorXd& q) const noexcept {
+  double energy = 0;
+  for (const Freedom& f : freedoms_) {
+    const double length = q[f.q] - f.passive.rest;
+    energy += 0.5 * f.passive.stiffness * length * length;
+  }
+  return energy;
+}
+
+void PassiveJoints::AddLimits(const VectorXd& q, double step, MatrixXd* A,
+                              VectorXd* right) const noexcept {
+  for (const Freedom& f : freedoms_) {
+    if (f.held == 0) continue;
+    const double hold = kHardLimit * (*A)(f.v, f.v);
+    (*A)(f.v, f.v) += hold;
+    (*right)[f.v] += hold * ((f.held > 0 ? f.upper : f.lower) - q[f.q]) / step;
+  }
+}
+
+bool PassiveJoints::ChangeLimits(const VectorXd& q, const VectorXd& next_v, double step) noexcept {
+  bool changed = false;
+  at_limit_ = false;
+  for (Freedom& f : freedoms_) {
+    const double end = q[f.q] + step * next_v[f.v];
+    const double above = end - f.upper, below = f.lower - end;
+    // A limit that holds is passed a little: it pulls where it is not.
+    if (f.held != 0) {
+      if ((f.held > 0 ? above : below) < 0) {
+        f.held = 0;
+        changed = true;
+      }
+    } else if (above > 0 || below > 0) {
+      f.held = above > 0 ? 1 : -1;
+      changed = true;
+    }
+    at_limit_ |= f.held != 0;
+  }
+  return changed;
+}
+
+bool HasPassive(const Passive& passive) {
+  return passive.stiffness != 0 || passive.viscous != 0 || passive.coulomb != 0;
+}
+
+void RefuseUnrenderedFriction(const KinematicTree& tree) {
+  for (const Joint& joint : tree.mechanism.joints) {
+    if (joint.load_friction.coefficient == 0) continue;
+    throw std::invalid_argument(fmt::format(
+        "joint '{}': friction in proportion to the load is not rendered to a hand; give "
+        "it `coulomb` or `viscous` friction",
+        joint.name));
+  }
+  for (const Loop& loop : tree.loops) {
+    const Joint& joint = tree.mechanism.joints[loop.joint];
+    if (std::none_of(joint.passive.begin(), joint.passive.end(),
+                     [](const Passive& passive) { return HasPassive(passive); }))
+      continue;
+    throw std::invalid_argument(
+        fmt::format("joint '{}' is cut, but has a spring or friction; name another joint in `cuts`",
+                    joint.name));
+  }
+}
+
+}  // namespace vmech

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <vector>
+
+#include "vmech/kinematics/tree/kinematic_tree.h"
+
+namespace vmech {
+
+/// Springs, friction and limits of the tree's joints in a hand, taken at the end of steps of T, so
+/// that they only take energy.
+class PassiveJoints {
+ public:
+  /// @throws std::invalid_argument naming the joint for friction in proportion to a joint's load,
+  /// and for springs or friction at a cut joint, which are beyond these paths.
+  explicit PassiveJoints(const KinematicTree& tree);
+
+  /// Adds them to A v+ = right: a spring and a damper as they are, dry friction as the damper that
+  /// it is at the velocities v, of all freedoms of a contact together.
+  void AddTo(const VectorXd& q, const VectorXd& v, double step, MatrixXd* A,
+             VectorXd* right) const noexcept;
+  /// Energy of the springs [J].
+  double Energy(const VectorXd& q) const noexcept;
+
+  /// Adds the limits that hold.
+  void AddLimits(const VectorXd& q, double step, MatrixXd* A, VectorXd* right) const noexcept;
+  /// Limits that the step at next velocities would pass begin to hold, limits that would pull let
+  /// go. True if any did.
+  bool ChangeLimits(const VectorXd& q, const VectorXd& next_v, double step) noexcept;
+  bool at_limit() const noexcept { return at_limit_; }
+
+ private:
+  /// A coordinate of its own with a spring, friction or limits.
+  struct Freedom {
+    int q, v;
+    Passive passive;
+    double lower, upper;
+    int contact;   // the same for all freedoms that slide together
+    int held = 0;  // -1 at the lower limit, 1 at the upper
+  };
+
+  std::vector<Freedom> freedoms_;
+  bool at_limit_ = false;
+};
+
+/// Does this freedom have a spring or friction?
+bool HasPassive(const Passive& passive);
+
+/// Dry friction builds up in proportion to the speed until here [m/s] or [rad/s].
+inline constexpr double kSlowSliding = 1e-2;
+
+/// What PassiveJoints refuses. @throws std::invalid_argument
+void RefuseUnrenderedFriction(const KinematicTree& tree);
+
+}  // namespace vmech
