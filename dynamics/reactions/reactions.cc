@@ -135,7 +135,7 @@ ReactionSolver<T>::ReactionSolver(const KinematicTree& tree, const CoordinatePar
     : tree_(tree),
       partition_(partition),
       compliances_(std::move(compliances)),
-      loads_(tree.mechanism.joints.size()),
+      loads_(LoopLoadsOfJoints(tree)),
       strain_W_(tree.loops.size()) {
   FindLoads();
   OrderUnknowns();
@@ -143,16 +143,6 @@ ReactionSolver<T>::ReactionSolver(const KinematicTree& tree, const CoordinatePar
 
 template <typename T>
 void ReactionSolver<T>::FindLoads() {
-  for (size_t l = 0; l < tree_.loops.size(); ++l) {
-    const Loop& loop = tree_.loops[l];
-    const int index = static_cast<int>(l);
-    loads_[loop.joint].push_back({index, 1.0});
-    for (const LoopNode& n : loop.path) {
-      const TreeNode& node = tree_.nodes[n.node];
-      if (tree_.placements[node.joint].tree_node != n.node) continue;
-      loads_[node.joint].push_back({index, node.reversed ? n.sign : -n.sign});
-    }
-  }
   for (size_t j = 0; j < loads_.size(); ++j) {
     for (size_t a = 0; a < loads_[j].size(); ++a) {
       for (size_t b = 0; b < loads_[j].size(); ++b) {
@@ -227,8 +217,8 @@ void ReactionSolver<T>::AddContribution(const TreeWorkspace<T>& ws,
                                         const Contribution& contribution) {
   const JointState<T>& joint = joints[contribution.joint];
   const JointCompliance& compliance = compliances_[contribution.joint];
-  const Load& k = loads_[contribution.joint][contribution.load_k];
-  const Load& l = loads_[contribution.joint][contribution.load_l];
+  const LoopLoad& k = loads_[contribution.joint][contribution.load_k];
+  const LoopLoad& l = loads_[contribution.joint][contribution.load_l];
   const double sign = k.sign * l.sign;
   const bool symmetric = k.loop == l.loop;
   const Vector3<T> d_k = ws.loops[k.loop].p_WM - joint.p_WM;
@@ -328,7 +318,7 @@ void ReactionSolver<T>::Solve(const TreeWorkspace<T>& ws, const std::vector<Join
                        give += (soft.force * soft.axis.dot(W.force)) * soft.axis;
                        turn += (soft.moment * soft.axis.dot(W.moment)) * soft.axis;
                      });
-    for (const Load& load : loads_[j]) {
+    for (const LoopLoad& load : loads_[j]) {
       const Vector3<T> d = ws.loops[load.loop].p_WM - joints[j].p_WM;
       strain_W_[load.loop].force += load.sign * (give - d.cross(turn));
       strain_W_[load.loop].moment += load.sign * turn;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "vmech/base/linear_algebra/envelope_ldlt.h"
+#include "vmech/dynamics/reactions/loop_loads.h"
 #include "vmech/dynamics/reactions/rule.h"
 #include "vmech/kinematics/loops/coordinate_partition.h"
 #include "vmech/kinematics/tree/tree_workspace.h"
@@ -71,11 +72,6 @@ class ReactionSolver {
              T* mu);
 
  private:
-  /// A loop that loads a joint, and the sense in which mu enters W_M.
-  struct Load {
-    int loop;
-    double sign;
-  };
   /// Two loops that load a joint in common, l <= k; their share of A in world axes, by forces and
   /// moments. Symmetric where k = l: A_mf is not used there.
   struct Block {
@@ -99,7 +95,7 @@ class ReactionSolver {
   const KinematicTree& tree_;
   const CoordinatePartition& partition_;
   std::vector<JointCompliance> compliances_;
-  std::vector<std::vector<Load>> loads_;  ///< per joint
+  std::vector<std::vector<LoopLoad>> loads_;  ///< per joint
   std::vector<Block> blocks_;
   std::vector<Contribution> contributions_;
   std::vector<int> row_position_;        ///< per loop: place of its first row among the unknowns

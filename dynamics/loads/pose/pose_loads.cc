@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "vmech/base/packet.h"
-#include "vmech/dynamics/loads/load_result.h"
 #include "vmech/dynamics/loads/pose/external_loads.h"
 #include "vmech/dynamics/loads/pose/hand_wrench.h"
 #include "vmech/dynamics/loads/pose/idle_freedoms.h"
@@ -260,23 +259,6 @@ void DriveForces(const LoadModel& model, LoadWorkspace<T>* ws) {
   }
 }
 
-/// Motion of a link's drawing frame, world axes.
-template <typename T>
-void StoreLinkMotion(const TreeNode& node, const NodeState<T>& s, int link, PoseLoads* poses) {
-  const Pose<T> X_WL = s.X_WB * node.X_BL.cast<T>();
-  const Vector3<T> r = X_WL.p - s.X_WB.p;
-  const Vector3<T> v = s.v + s.w.cross(r);
-  const Vector3<T> a = s.a + s.alpha.cross(r) + s.w.cross(s.w.cross(r));
-  for (int lane = 0; lane < kLanesOf<T>; ++lane) {
-    LinkMotion& motion = poses[lane].links[link];
-    motion.X_WL = {Lane(X_WL.R, lane), Lane(X_WL.p, lane)};
-    motion.v = Lane(v, lane);
-    motion.w = Lane(s.w, lane);
-    motion.a = Lane(a, lane);
-    motion.alpha = Lane(s.alpha, lane);
-  }
-}
-
 }  // namespace
 
 bool RunsInPackets(const LoadModel& model) {
@@ -314,53 +296,9 @@ bool EvaluatePoseLoads(const LoadModel& model, const Motion& motion, size_t pose
   return true;
 }
 
-template <typename T>
-void StorePoseLoads(const LoadModel& model, const Motion& motion, size_t pose,
-                    const LoadWorkspace<T>& ws, bool link_motions, PoseLoads* poses) {
-  for (int lane = 0; lane < kLanesOf<T>; ++lane) {
-    PoseLoads& out = poses[lane];
-    out.time = motion.times[pose + lane];
-    out.drives.clear();
-    out.drives.reserve(model.drives.size());
-    for (size_t k = 0; k < model.drives.size(); ++k) {
-      out.drives.push_back(
-          {DriveAt(model, motion, pose + lane, k), Lane(ws.drive_forces[k], lane)});
-    }
-    out.joints.clear();
-    out.joints.reserve(ws.loads.size());
-    for (const JointLoad<T>& load : ws.loads) {
-      out.joints.push_back({{Lane(load.W_F.force, lane), Lane(load.W_F.moment, lane)},
-                            Lane(load.position, lane),
-                            Lane(load.rate, lane)});
-    }
-    out.links.resize(link_motions ? model.tree.mechanism.links.size() : 0);
-    out.power = Lane(ws.power, lane);
-    out.power_error = Lane(ws.power_gap, lane);
-    out.power_error_scale = Lane(ws.power_size, lane);
-    out.smallest_pivot = Lane(ws.dependents.smallest_pivot(), lane);
-    out.closure = Lane(ws.closure, lane);
-    out.jammed = ws.jammed;
-    out.unresisted = ws.unresisted;
-    out.locking_joint = ws.locking_joint;
-    out.held_by_friction = ws.held_by_friction;
-  }
-  for (size_t link = 0; link < poses[0].links.size(); ++link) {
-    const int index = model.tree.NodeOfLink(static_cast<int>(link));
-    if (index < 0) continue;
-    StoreLinkMotion(model.tree.nodes[index], ws.tree.nodes[index], static_cast<int>(link), poses);
-  }
-  if constexpr (kSinglePose<T>) {
-    if (!model.hand) return;
-    poses->hand = ws.hand;
-    poses->hand_error = (motion.hand[pose].X_WH.p - GraspPose(model, ws.tree).p).norm();
-  }
-}
-
 // NOLINTBEGIN(bugprone-macro-parentheses): T is a type
-#define VMECH_INSTANTIATE(T)                                                                      \
-  template bool EvaluatePoseLoads<T>(const LoadModel&, const Motion&, size_t, LoadWorkspace<T>*); \
-  template void StorePoseLoads<T>(const LoadModel&, const Motion&, size_t,                        \
-                                  const LoadWorkspace<T>&, bool, PoseLoads*);
+#define VMECH_INSTANTIATE(T) \
+  template bool EvaluatePoseLoads<T>(const LoadModel&, const Motion&, size_t, LoadWorkspace<T>*);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Packet)
 #undef VMECH_INSTANTIATE
