@@ -65,7 +65,7 @@ void AddDeadCentres(const LoadStudy& study, const LoadStudyResult& result, Cycle
   for (plot::Station& station : cycle->dead_centres) station.label.clear();
 }
 
-std::string SpeedInWords(const PoseArray<PoseLoads>& poses, size_t drive, bool rotation) {
+std::string SpeedInWords(const PoseSeries& poses, size_t drive, bool rotation) {
   double min = poses.front().drives[drive].velocity, max = min;
   for (const PoseLoads& pose : poses) {
     min = std::min(min, pose.drives[drive].velocity);
@@ -147,7 +147,7 @@ std::string DescribeDeadCentres(const LoadStudy& study, const LoadStudyResult& r
 }
 
 std::string DescribeMotion(const LoadStudy& study, const LoadStudyResult& result) {
-  const PoseArray<PoseLoads>& poses = result.poses;
+  const PoseSeries& poses = result.poses;
   std::string words;
   for (size_t i = 0; i < study.drives.size(); ++i) {
     const JointDrive& drive = study.drives[i];

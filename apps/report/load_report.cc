@@ -49,7 +49,7 @@ void CheckReport(const Report& report) {
     return pose.joints.size() == joints && pose.drives.size() == report.study.drives.size() &&
            pose.drives.size() == report.study.drives.size();
   };
-  const PoseArray<PoseLoads>& poses = report.result.poses;
+  const PoseSeries& poses = report.result.poses;
   if (poses.empty()) throw std::invalid_argument("report: the study has no poses");
   const bool bearings_fit = report.file.bearings.size() == report.outcome.bearings.size();
   if (!bearings_fit || report.result.certainty.size() != joints ||
@@ -106,7 +106,7 @@ size_t HardestDrive(const Report& report) {
 html::Tile DriveTile(const Report& report, const Cycle& cycle, size_t drive) {
   double peak = 0, sum = 0;
   size_t at = 0;
-  const PoseArray<PoseLoads>& poses = report.result.poses;
+  const PoseSeries& poses = report.result.poses;
   for (size_t i = 0; i < poses.size(); ++i) {
     const double force = poses[i].drives[drive].force;
     sum += force;

@@ -9,6 +9,7 @@
 
 #include "vmech/dynamics/loads/load_result.h"
 #include "vmech/dynamics/loads/pose/contact_friction.h"
+#include "vmech/dynamics/rigid_body/passive.h"
 
 namespace vmech {
 namespace {
@@ -25,14 +26,11 @@ std::string AnglesOf(const Joint& screw) {
 }
 
 void WarnOfJams(const Mechanism& mechanism, LoadStudyResult* result) {
-  size_t jammed = 0;
-  const PoseLoads* first = nullptr;
-  for (const PoseLoads& pose : result->poses) {
-    if (!pose.jammed) continue;
-    if (first == nullptr) first = &pose;
-    ++jammed;
-  }
+  const LoadArrays& loads = result->poses.arrays();
+  const auto is_jammed = [](const PoseState& state) { return state.jammed; };
+  const auto jammed = std::count_if(loads.states.begin(), loads.states.end(), is_jammed);
   if (jammed == 0) return;
+  const auto first = std::find_if(loads.states.begin(), loads.states.end(), is_jammed);
   std::string where;
   if (first->locking_joint >= 0) {
     const Joint& joint = mechanism.joints[first->locking_joint];
@@ -43,7 +41,8 @@ void WarnOfJams(const Mechanism& mechanism, LoadStudyResult* result) {
       "friction locks the mechanism{} at {} of {} poses, the first at t = {:.6g} s: any force of "
       "the drive presses harder than it moves. There is no equilibrium under the drive; the loads "
       "there are not meaningful",
-      where, jammed, result->poses.size(), first->time));
+      where, jammed, result->poses.size(),
+      loads.times[static_cast<size_t>(first - loads.states.begin())]));
 }
 
 void WarnOfSelfLocking(const Mechanism& mechanism, LoadStudyResult* result) {
@@ -52,8 +51,9 @@ void WarnOfSelfLocking(const Mechanism& mechanism, LoadStudyResult* result) {
     result->warnings.push_back(fmt::format(
         "screw '{}' is self-locking: no axial force turns it ({})", joint.name, AnglesOf(joint)));
   }
-  const auto held = std::count_if(result->poses.begin(), result->poses.end(),
-                                  [](const PoseLoads& pose) { return pose.held_by_friction; });
+  const std::vector<PoseState>& states = result->poses.arrays().states;
+  const auto held = std::count_if(states.begin(), states.end(),
+                                  [](const PoseState& state) { return state.held_by_friction; });
   if (held == 0) return;
   result->warnings.push_back(
       fmt::format("at {} of {} poses the drive stands still and friction alone holds the "
@@ -94,6 +94,7 @@ std::array<UnaccountedLoad, 2> FindUnaccounted(const Joint& joint, size_t index,
 }
 
 void WarnOfUnaccountedLoads(const Mechanism& mechanism, LoadStudyResult* result) {
+  if (!HasLoadFriction(mechanism)) return;
   const LargestLoads scale = FindLargestLoads(*result);
   const double length = CharacteristicLength(mechanism);
   for (size_t j = 0; j < mechanism.joints.size(); ++j) {

@@ -1,5 +1,4 @@
 #include "vmech/dynamics/loads/open_components.h"
-#include "vmech/dynamics/loads/load_result.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,17 +7,6 @@ namespace vmech {
 namespace {
 
 constexpr double kZero = 1e-9;  // of the largest force, as reports show it
-
-/// The largest size of every component over the study.
-std::vector<Vector6d> Peaks(const LoadStudyResult& result) {
-  std::vector<Vector6d> peaks(result.certainty.size(), Vector6d::Zero());
-  for (const PoseLoads& pose : result.poses) {
-    for (size_t j = 0; j < peaks.size(); ++j) {
-      peaks[j] = peaks[j].cwiseMax(pose.joints[j].Stacked().cwiseAbs());
-    }
-  }
-  return peaks;
-}
 
 double LargestForce(const std::vector<Vector6d>& peaks) {
   double largest = 0;
@@ -36,16 +24,16 @@ bool AnyNotDetermined(const LoadStudyResult& result) {
 }
 
 std::vector<std::array<bool, 6>> FindOpenComponents(const LoadStudyResult& result,
+                                                    const LoadPeaks& peaks,
                                                     const RuleDependence* dependence,
                                                     double length) {
-  const std::vector<Vector6d> peaks = Peaks(result);
-  const double force = kZero * LargestForce(peaks);
+  const double force = kZero * LargestForce(peaks.components);
   std::vector<std::array<bool, 6>> open(result.certainty.size());
   for (size_t j = 0; j < open.size(); ++j) {
     for (size_t k = 0; k < 6; ++k) {
       if (result.certainty[j][k] != Certainty::kNotDetermined) continue;
-      const bool loaded =
-          !(peaks[j][static_cast<Eigen::Index>(k)] <= (k < 3 ? force : force * length));
+      const double peak = peaks.components[j][static_cast<Eigen::Index>(k)];
+      const bool loaded = !(peak <= (k < 3 ? force : force * length));
       open[j][k] = loaded || dependence == nullptr || dependence->joints[j][k];
     }
   }

@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "vmech/dynamics/loads/load_peaks.h"
 #include "vmech/dynamics/loads/load_result.h"
 #include "vmech/dynamics/loads/load_study.h"
 #include "vmech/dynamics/loads/rule_dependence.h"
@@ -13,9 +14,11 @@ namespace vmech {
 bool AnyNotDetermined(const LoadStudyResult& result);
 
 /// LoadStudyResult::open: of the components that statics does not determine, those that are not
-/// zero at every pose, or that other stiffnesses change. Without a `dependence` nothing is known of
-/// other stiffnesses, and all are open. `length`: the characteristic one of the mechanism [m].
+/// zero at every pose by their `peaks`, or that other stiffnesses change. Without a `dependence`
+/// nothing is known of other stiffnesses, and all are open. `length`: the characteristic one of the
+/// mechanism [m].
 std::vector<std::array<bool, 6>> FindOpenComponents(const LoadStudyResult& result,
+                                                    const LoadPeaks& peaks,
                                                     const RuleDependence* dependence,
                                                     double length);
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
+#include "vmech/base/packet.h"
 #include "vmech/dynamics/loads/pose/pose_loads.h"
 #include "vmech/kinematics/inverse/inverse_kinematics.h"
 #include "vmech/mechanisms/freedoms.h"
@@ -43,62 +43,107 @@ LoadModel WithOtherChoices(const LoadModel& model, int choice) {
   return other;
 }
 
-/// Poses of a motion, as other weights of the hand make them.
-class OtherMotion {
+/// Some poses of a motion.
+Motion PosesOf(const LoadModel& model, const Motion& motion, const std::vector<size_t>& poses) {
+  Motion some;
+  some.speed = motion.speed;
+  const auto copy = [](const auto& from, size_t pose, size_t each, auto* to) {
+    to->insert(to->end(), from.begin() + pose * each, from.begin() + (pose + 1) * each);
+  };
+  for (const size_t pose : poses) {
+    copy(motion.times, pose, 1, &some.times);
+    copy(motion.coordinates, pose, model.tree.nq, &some.coordinates);
+    copy(motion.drives, pose, model.drives.size(), &some.drives);
+    copy(motion.cut_positions, pose, model.tree.loops.size(), &some.cut_positions);
+    if (model.hand) copy(motion.hand, pose, 1, &some.hand);
+  }
+  return some;
+}
+
+/// The motion as the weights of the model's hand make it.
+Motion LedByHand(const LoadModel& model, Motion motion) {
+  if (!model.hand) return motion;
+  InverseKinematics hand(
+      model.tree, GraspFrameOf(model.tree, model.hand->grasp),
+      InverseKinematicsOptions{.stiffness = model.hand_stiffness, .joint_limits = false});
+  for (size_t i = 0; i < motion.size(); ++i) {
+    hand.SetTarget(motion.hand[i].X_WH);
+    const Summary summary = Solve(hand, NullspaceOptions(), motion.q(i));
+    std::copy(summary.x.begin(), summary.x.end(), motion.coordinates.begin() + i * model.tree.nq);
+  }
+  return motion;
+}
+
+/// A model with its motion.
+struct Choice {
+  LoadModel model;
+  Motion motion;
+};
+
+std::vector<Choice> OtherChoices(const LoadModel& model, const Motion& motion) {
+  std::vector<Choice> others;
+  for (int choice = 1; choice <= kChoices; ++choice) {
+    LoadModel other = WithOtherChoices(model, choice);
+    Motion led = LedByHand(other, motion);
+    others.push_back({std::move(other), std::move(led)});
+  }
+  return others;
+}
+
+/// Marks what differs between two solutions for one pose.
+template <typename T>
+void Compare(const LoadModel& model, const LoadWorkspace<T>& a, const LoadWorkspace<T>& b,
+             RuleDependence* result) {
+  using std::abs, std::max, std::sqrt;
+  const double changed = std::max(kChanged, TouchOfRounding(model.rounding));
+  const auto size = [](const Vector3<T>& vector) { return sqrt(vector.squaredNorm()); };
+  T force = size(a.hand.force);
+  for (const auto& load : a.loads) force = max(force, size(load.W_F.force));
+  T moment = force * T(model.tree.length);
+  for (const auto& load : a.loads) moment = max(moment, size(load.W_F.moment));
+  for (size_t j = 0; j < a.loads.size(); ++j) {
+    const Wrench<T> change = b.loads[j].W_F - a.loads[j].W_F;
+    for (int k = 0; k < 3; ++k) {
+      if (!AllLanes(abs(change.force[k]) <= changed * force)) result->joints[j][k] = true;
+      if (!AllLanes(abs(change.moment[k]) <= changed * moment)) result->joints[j][3 + k] = true;
+    }
+  }
+  for (size_t k = 0; k < result->drives.size(); ++k) {
+    const T change = abs(b.drive_forces[k] - a.drive_forces[k]);
+    const Joint& joint = model.tree.mechanism.joints[model.drives[k].joint];
+    const bool turns = FreedomsOfType(joint.type).rotates[model.drives[k].freedom];
+    if (!AllLanes(change <= changed * (turns ? moment : force))) result->drives[k] = true;
+  }
+}
+
+/// Finds the loads of as many poses at once as T has lanes, as chosen and otherwise.
+template <typename T>
+class Comparison {
  public:
-  explicit OtherMotion(const LoadModel& model) : model_(model) {
-    if (!model.hand) return;
-    hand_.emplace(
-        model.tree, GraspFrameOf(model.tree, model.hand->grasp),
-        InverseKinematicsOptions{.stiffness = model.hand_stiffness, .joint_limits = false});
+  Comparison(const LoadModel& model, const Motion& motion, const std::vector<Choice>& others)
+      : model_(model), motion_(motion), others_(others), as_chosen_(model) {
+    for (const Choice& other : others) otherwise_.emplace_back(other.model);
   }
 
-  /// One pose, from that of the motion.
-  Motion At(const Motion& motion, size_t pose) {
-    const auto part = [pose](const auto& list, size_t each) {
-      return std::vector(list.begin() + pose * each, list.begin() + (pose + 1) * each);
-    };
-    const size_t loops = model_.tree.loops.size();
-    Motion one{part(motion.times, 1),
-               part(motion.coordinates, model_.tree.nq),
-               part(motion.drives, model_.drives.size()),
-               {},
-               part(motion.cut_positions, loops),
-               motion.speed};
-    if (!hand_) return one;
-    one.hand = part(motion.hand, 1);
-    hand_->SetTarget(one.hand[0].X_WH);
-    const Summary summary = Solve(*hand_, NullspaceOptions(), motion.q(pose));
-    one.coordinates.assign(summary.x.begin(), summary.x.end());
-    return one;
+  /// False if the poses cannot be evaluated, at least not at once.
+  bool At(size_t pose, RuleDependence* result) {
+    if (!EvaluatePoseLoads(model_, motion_, pose, &as_chosen_)) return false;
+    for (size_t i = 0; !as_chosen_.jammed && i < others_.size(); ++i) {
+      const Choice& other = others_[i];
+      LoadWorkspace<T>& ws = otherwise_[i];
+      if (!EvaluatePoseLoads(other.model, other.motion, pose, &ws) || ws.jammed) continue;
+      Compare(model_, as_chosen_, ws, result);
+    }
+    return true;
   }
 
  private:
   const LoadModel& model_;
-  std::optional<InverseKinematics> hand_;
+  const Motion& motion_;
+  const std::vector<Choice>& others_;
+  LoadWorkspace<T> as_chosen_;
+  std::vector<LoadWorkspace<T>> otherwise_;
 };
-
-void Compare(const LoadModel& model, const LoadWorkspace<double>& a, const LoadWorkspace<double>& b,
-             RuleDependence* result) {
-  const double changed = std::max(kChanged, TouchOfRounding(model.rounding));
-  double force = a.hand.force.norm();
-  for (const auto& load : a.loads) force = std::max(force, load.W_F.force.norm());
-  double moment = force * model.tree.length;
-  for (const auto& load : a.loads) moment = std::max(moment, load.W_F.moment.norm());
-  for (size_t j = 0; j < a.loads.size(); ++j) {
-    const Wrenchd change = b.loads[j].W_F - a.loads[j].W_F;
-    for (int k = 0; k < 3; ++k) {
-      if (!(std::abs(change.force[k]) <= changed * force)) result->joints[j][k] = true;
-      if (!(std::abs(change.moment[k]) <= changed * moment)) result->joints[j][3 + k] = true;
-    }
-  }
-  for (size_t k = 0; k < result->drives.size(); ++k) {
-    const double change = std::abs(b.drive_forces[k] - a.drive_forces[k]);
-    const Joint& joint = model.tree.mechanism.joints[model.drives[k].joint];
-    const bool turns = FreedomsOfType(joint.type).rotates[model.drives[k].freedom];
-    if (!(change <= changed * (turns ? moment : force))) result->drives[k] = true;
-  }
-}
 
 }  // namespace
 
@@ -108,15 +153,16 @@ RuleDependence FindRuleDependence(const PreparedStudy& prepared, const Motion& m
   RuleDependence result;
   result.joints.resize(model.tree.mechanism.joints.size());
   result.drives.resize(model.drives.size());
-  LoadWorkspace<double> as_chosen(model);
-  for (int choice = 1; choice <= kChoices; ++choice) {
-    const LoadModel other = WithOtherChoices(model, choice);
-    LoadWorkspace<double> ws(other);
-    OtherMotion other_motion(other);
-    for (const size_t pose : poses) {
-      if (!EvaluatePoseLoads(model, motion, pose, &as_chosen) || as_chosen.jammed) continue;
-      if (!EvaluatePoseLoads(other, other_motion.At(motion, pose), 0, &ws) || ws.jammed) continue;
-      Compare(model, as_chosen, ws, &result);
+  const Motion judged = PosesOf(model, motion, poses);
+  const std::vector<Choice> others = OtherChoices(model, judged);
+  Comparison<double> one(model, judged, others);
+  Comparison<Packet> four(model, judged, others);
+  for (size_t i = 0; i < poses.size();) {
+    const bool at_once = RunsInPackets(model) && i + Packet::kLanes <= poses.size();
+    if (at_once && four.At(i, &result)) {
+      i += Packet::kLanes;
+    } else {
+      one.At(i++, &result);
     }
   }
   return result;

@@ -7,16 +7,20 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <numeric>
+#include <span>
 #include <stdexcept>
 #include <thread>
 
 #include "vmech/base/packet.h"
 #include "vmech/dynamics/loads/friction_report.h"
+#include "vmech/dynamics/loads/load_peaks.h"
 #include "vmech/dynamics/loads/load_result.h"
 #include "vmech/dynamics/loads/open_components.h"
 #include "vmech/dynamics/loads/pose/external_loads.h"
 #include "vmech/dynamics/loads/pose/pose_loads.h"
-#include "vmech/dynamics/loads/prepare_study.h"
+#include "vmech/dynamics/loads/pose/store_pose_loads.h"
 #include "vmech/dynamics/loads/rule_dependence.h"
 #include "vmech/dynamics/loads/study_plausibility.h"
 #include "vmech/dynamics/loads/track_motion.h"
@@ -46,8 +50,8 @@ void RequireInsideTables(const LoadModel& model, const Motion& motion) {
 class ParallelEvaluation {
  public:
   ParallelEvaluation(const LoadStudy& study, const LoadModel& model, const Motion& motion,
-                     const LoadStudyOptions& options, LoadStudyResult* result)
-      : study_(study), model_(model), motion_(motion), options_(options), poses_(result->poses) {}
+                     const LoadStudyOptions& options, LoadArrays* loads)
+      : study_(study), model_(model), motion_(motion), options_(options), loads_(loads) {}
 
   void Run() {
     const size_t chunks = (motion_.size() + kChunk - 1) / kChunk;
@@ -86,7 +90,7 @@ class ParallelEvaluation {
   template <typename T>
   bool Evaluate(size_t i, LoadWorkspace<T>* ws) {
     if (!EvaluatePoseLoads(model_, motion_, i, ws)) return false;
-    StorePoseLoads(model_, motion_, i, *ws, options_.link_motions, &poses_[i]);
+    StorePoseLoads(model_, motion_, i, *ws, loads_);
     return true;
   }
 
@@ -113,24 +117,11 @@ class ParallelEvaluation {
   const LoadModel& model_;
   const Motion& motion_;
   const LoadStudyOptions& options_;
-  PoseArray<PoseLoads>& poses_;
+  LoadArrays* loads_;
   std::atomic<size_t> next_{0}, done_{0};
   std::atomic<size_t> dead_centre_{std::numeric_limits<size_t>::max()};
   std::atomic<bool> stopped_{false};
 };
-
-void SizePoses(const LoadModel& model, const LoadStudyOptions& options, size_t count,
-               LoadStudyResult* result) {
-  const Mechanism& mechanism = model.tree.mechanism;
-  const size_t links = options.link_motions ? mechanism.links.size() : 0;
-  const size_t each = PoseLoads::Size(model.drives.size(), mechanism.joints.size(), links);
-  result->memory =
-      std::make_shared<PoseArena>(PoseArena::Rounded(count * sizeof(PoseLoads)) + count * each);
-  PoseArena* memory = result->memory.get();
-  result->poses = PoseArray<PoseLoads>(PoseAllocator<PoseLoads>(memory));
-  result->poses.reserve(count);
-  for (size_t i = 0; i < count; ++i) result->poses.emplace_back(memory);
-}
 
 /// Poses at which certainty is judged: evenly spread, a dozen or so.
 std::vector<size_t> JudgedPoses(size_t count) {
@@ -143,13 +134,14 @@ std::vector<size_t> JudgedPoses(size_t count) {
 
 /// What depends on the choices that are the user's is not determined.
 void AddRuleDependence(const PreparedStudy& prepared, const Motion& motion,
-                       const std::vector<size_t>& poses, LoadStudyResult* result) {
+                       const std::vector<size_t>& poses, const LoadPeaks& peaks,
+                       LoadStudyResult* result) {
   const LoadModel& model = prepared.model;
   result->drive_certainty.assign(model.drives.size(), Certainty::kCertain);
   const bool settled_by_choice = model.has_load_friction || model.hand;
   const bool by_rule = model.rule == ReactionRule::kPaperJoint;
   if (by_rule || !(settled_by_choice || AnyNotDetermined(*result))) {
-    result->open = FindOpenComponents(*result, nullptr, model.tree.length);
+    result->open = FindOpenComponents(*result, peaks, nullptr, model.tree.length);
     return;
   }
   const RuleDependence dependence = FindRuleDependence(prepared, motion, poses);
@@ -158,7 +150,7 @@ void AddRuleDependence(const PreparedStudy& prepared, const Motion& motion,
       if (dependence.joints[j][k]) result->certainty[j][k] = Certainty::kNotDetermined;
     }
   }
-  result->open = FindOpenComponents(*result, &dependence, model.tree.length);
+  result->open = FindOpenComponents(*result, peaks, &dependence, model.tree.length);
   if (!settled_by_choice) return;
   std::string drives;
   for (size_t k = 0; k < model.drives.size(); ++k) {
@@ -197,47 +189,54 @@ std::vector<JointCertainty> JudgeStudy(const LoadModel& model, const Motion& mot
   return verdict;
 }
 
+bool AllFinite(std::span<const double> numbers) {
+  const Eigen::Map<const VectorXd> x(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
+  return (x - x).sum() == 0;
+}
+
+bool IsFinite(const PoseLoads& pose) {
+  return pose.hand.Stacked().allFinite() && std::isfinite(pose.power_error_scale) &&
+         std::all_of(pose.drives.begin(), pose.drives.end(),
+                     [](const DriveSample& drive) { return std::isfinite(drive.force); }) &&
+         std::all_of(pose.joints.begin(), pose.joints.end(),
+                     [](const JointSample& joint) { return joint.Stacked().allFinite(); });
+}
+
+/// Figures that overflow have no answer.
+void RequireFinite(const PoseSeries& poses) {
+  const LoadArrays& loads = poses.arrays();
+  const bool finite = AllFinite(loads.wrenches) && AllFinite(loads.drive_forces) &&
+                      AllFinite(loads.power_error_scales) && loads.hands.empty();
+  for (size_t i = 0; !finite && i < poses.size(); ++i) {
+    if (IsFinite(poses[i])) continue;
+    throw std::runtime_error(fmt::format(
+        "pose {} (t = {:.6g} s): the loads are too large to be computed; check the units of "
+        "masses, inertias, speeds and external loads",
+        i, poses[i].time));
+  }
+}
+
 /// The larger one; what is not a number is, too.
 double Larger(double a, double b) {
   return std::isnan(a) || (a > b && !std::isnan(b)) ? a : b;
 }
 
-/// Figures that overflow have no answer.
-void RequireFinite(const LoadStudyResult& result) {
-  for (size_t i = 0; i < result.poses.size(); ++i) {
-    const PoseLoads& pose = result.poses[i];
-    bool finite = pose.hand.Stacked().allFinite() && std::isfinite(pose.power_error_scale);
-    for (const DriveSample& drive : pose.drives) finite = finite && std::isfinite(drive.force);
-    for (const JointSample& joint : pose.joints) finite = finite && joint.Stacked().allFinite();
-    if (finite) continue;
-    throw std::runtime_error(fmt::format(
-        "pose {} (t = {:.6g} s): the loads are too large to be computed; check the units of "
-        "masses, inertias, speeds and external loads",
-        i, pose.time));
-  }
-}
-
-double LargestForce(const LoadStudyResult& result) {
-  double largest = 0;
-  for (const PoseLoads& pose : result.poses) {
-    largest = Larger(pose.hand.force.norm(), largest);
-    for (const JointSample& joint : pose.joints) largest = Larger(joint.force.norm(), largest);
-  }
-  return largest;
+double Largest(std::span<const double> numbers, double at_least) {
+  return std::accumulate(numbers.begin(), numbers.end(), at_least,
+                         [](double largest, double x) { return Larger(x, largest); });
 }
 
 /// The errors of the self-checks. Powers are measured by the largest of the study: at a pose where
 /// they all but vanish their balance is that of the rounding of others. So it is where nothing
 /// moves; a length in three years is no motion.
-void CheckBalance(double length, LoadStudyResult* result) {
+void CheckBalance(double length, double largest_force, LoadArrays* loads, LoadStudyResult* result) {
   constexpr double kAtRest = 1e-8;  // [1/s]
-  double largest = kAtRest * length * LargestForce(*result);
-  for (const PoseLoads& pose : result->poses) largest = Larger(pose.power_error_scale, largest);
-  for (PoseLoads& pose : result->poses) {
-    if (pose.power_error != 0) pose.power_error /= largest;
-    result->max_closure = Larger(pose.closure, result->max_closure);
-    result->max_power_error = Larger(pose.power_error, result->max_power_error);
+  const double largest = Largest(loads->power_error_scales, kAtRest * length * largest_force);
+  for (double& error : loads->power_errors) {
+    if (error != 0) error /= largest;
   }
+  result->max_closure = Largest(loads->closures, 0);
+  result->max_power_error = Largest(loads->power_errors, 0);
 }
 
 /// Where a motion is beyond the limits of one freedom.
@@ -250,8 +249,10 @@ LimitPassed FindPassed(const LoadStudyResult& result, size_t joint, int freedom,
                        double upper) {
   constexpr double kOnLimit = 1e-9;  // [m, rad]
   LimitPassed passed;
+  const LoadArrays& loads = result.poses.arrays();
+  const double* position_at = &loads.positions[loads.first_freedom[joint] + freedom];
   for (size_t i = 0; i < result.poses.size(); ++i) {
-    const double position = result.poses[i].joints[joint].position[freedom];
+    const double position = position_at[i * loads.freedom_count()];
     const double beyond = std::max(lower - position, position - upper);
     if (!(beyond > kOnLimit)) continue;
     if (passed.poses++ == 0) passed.first = i;
@@ -280,6 +281,7 @@ void WatchLimits(const LoadStudy& study, LoadStudyResult* result) {
     const Joint& joint = study.mechanism.joints[j];
     if (joint.type == JointType::kSpherical) continue;
     for (int k = 0; k < FreedomsOf(joint.type); ++k) {
+      if (std::isinf(joint.lower[k]) && std::isinf(joint.upper[k])) continue;
       const LimitPassed passed = FindPassed(*result, j, k, joint.lower[k], joint.upper[k]);
       if (passed.poses == 0) continue;
       const std::string message = DescribePassed(study, *result, j, k, passed);
@@ -290,11 +292,12 @@ void WatchLimits(const LoadStudy& study, LoadStudyResult* result) {
 }
 
 /// A load along a freedom without inertia has no answer.
-void RefuseUnresisted(const LoadModel& model, const LoadStudyResult& result) {
+void RefuseUnresisted(const LoadModel& model, double largest_force, const LoadStudyResult& result) {
   constexpr double kRounding = 1e-7;
-  const double largest = LargestForce(result) * std::max(1.0, model.tree.length);
-  for (size_t i = 0; i < result.poses.size(); ++i) {
-    const double unresisted = result.poses[i].unresisted;
+  const double largest = largest_force * std::max(1.0, model.tree.length);
+  const std::vector<PoseState>& states = result.poses.arrays().states;
+  for (size_t i = 0; i < states.size(); ++i) {
+    const double unresisted = states[i].unresisted;
     if (unresisted <= kRounding * largest) continue;
     throw std::runtime_error(fmt::format(
         "pose {} (t = {:.6g} s): a load of {:.4g} N or N m acts along an idle freedom ({}), and "
@@ -304,16 +307,21 @@ void RefuseUnresisted(const LoadModel& model, const LoadStudyResult& result) {
   }
 }
 
-void Summarise(const LoadModel& model, const Motion& motion, LoadStudyResult* result) {
-  CheckBalance(model.tree.length, result);
-  RefuseUnresisted(model, *result);
-  for (size_t i = 0; i < result->poses.size(); ++i) {
-    const PoseLoads& pose = result->poses[i];
-    if (pose.smallest_pivot < kNearDeadCentre &&
+void FindSingularPoses(const LoadModel& model, const Motion& motion, LoadStudyResult* result) {
+  const LoadArrays& loads = result->poses.arrays();
+  for (size_t i = 0; i < loads.pose_count(); ++i) {
+    if (loads.smallest_pivots[i] < kNearDeadCentre &&
         DistanceFromDeadCentre(model.tree, model.partition, motion.q(i)) < kSingularTolerance) {
       result->singular_poses.push_back(i);
     }
   }
+}
+
+void Summarise(const LoadModel& model, const Motion& motion, double largest_force,
+               LoadArrays* loads, LoadStudyResult* result) {
+  CheckBalance(model.tree.length, largest_force, loads, result);
+  RefuseUnresisted(model, largest_force, *result);
+  FindSingularPoses(model, motion, result);
   AddFrictionWarnings(model.tree.mechanism, result);
   if (!result->singular_poses.empty()) {
     result->warnings.push_back(fmt::format(
@@ -326,13 +334,20 @@ void Summarise(const LoadModel& model, const Motion& motion, LoadStudyResult* re
 
 LoadStudyResult RunLoadStudy(const LoadStudy& study, const LoadStudyOptions& options) {
   options.Validate();
-  PreparedStudy prepared = PrepareStudy(study);
+  return RunLoadStudy(study, PrepareStudy(study), options);
+}
+
+LoadStudyResult RunLoadStudy(const LoadStudy& study, const PreparedStudy& prepared,
+                             const LoadStudyOptions& options) {
+  options.Validate();
   const Motion motion = TrackMotion(study, prepared, options.closure_tolerance);
   RequireInsideTables(prepared.model, motion);
 
   LoadStudyResult result;
-  SizePoses(prepared.model, options, motion.size(), &result);
-  ParallelEvaluation(study, prepared.model, motion, options, &result).Run();
+  const auto loads =
+      std::make_shared<LoadArrays>(MakeLoadArrays(prepared.model, motion, options.link_motions));
+  ParallelEvaluation(study, prepared.model, motion, options, loads.get()).Run();
+  result.poses = PoseSeries(loads);
   result.mobility = prepared.mobility.mobility;
   result.redundant_equations = prepared.mobility.redundant;
   for (const Loop& loop : prepared.model.tree.loops) {
@@ -342,13 +357,14 @@ LoadStudyResult RunLoadStudy(const LoadStudy& study, const LoadStudyOptions& opt
   result.norm_length = study.norm_length > 0 ? study.norm_length : prepared.model.tree.length;
   result.warnings = prepared.warnings;
   result.notes = prepared.notes;
-  RequireFinite(result);
+  RequireFinite(result.poses);
+  const LoadPeaks peaks = FindPeaks(*loads);
   for (std::string& doubt : DoubtsOf(study, result)) result.warnings.push_back(std::move(doubt));
   const std::vector<size_t> judged = JudgedPoses(motion.size());
   result.certainty = JudgeStudy(prepared.model, motion, judged);
-  AddRuleDependence(prepared, motion, judged, &result);
+  AddRuleDependence(prepared, motion, judged, peaks, &result);
   WatchLimits(study, &result);
-  Summarise(prepared.model, motion, &result);
+  Summarise(prepared.model, motion, peaks.force, loads.get(), &result);
   return result;
 }
 

@@ -2,6 +2,7 @@
 
 #include "vmech/dynamics/loads/load_result.h"
 #include "vmech/dynamics/loads/load_study.h"
+#include "vmech/dynamics/loads/prepare_study.h"
 
 namespace vmech {
 
@@ -10,5 +11,9 @@ namespace vmech {
 ///         where it leaves limits at which it is to stop, or where a load acts on a freedom that
 ///         nothing resists.
 LoadStudyResult RunLoadStudy(const LoadStudy& study, const LoadStudyOptions& options = {});
+
+/// The same where the study has been prepared already.
+LoadStudyResult RunLoadStudy(const LoadStudy& study, const PreparedStudy& prepared,
+                             const LoadStudyOptions& options);
 
 }  // namespace vmech

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <stdexcept>
 
 #include "vmech/mechanisms/validity.h"
@@ -16,8 +17,8 @@ namespace {
 /// Increasing and finite, entry by entry.
 void RequireIncreasing(const std::string& field, const std::vector<double>& values) {
   for (size_t i = 0; i < values.size(); ++i) {
+    if (std::isfinite(values[i]) && (i == 0 || values[i] > values[i - 1])) continue;
     RequireFinite(fmt::format("{}[{}]", field, i), values[i]);
-    if (i == 0 || values[i] > values[i - 1]) continue;
     Refuse(fmt::format("{}[{}]", field, i),
            fmt::format(" = {} follows {}; they must increase", values[i], values[i - 1]));
   }

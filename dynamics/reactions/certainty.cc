@@ -4,6 +4,8 @@
 
 #include "vmech/base/linear_algebra/linear_algebra.h"
 #include "vmech/base/screw_algebra.h"
+#include "vmech/dynamics/reactions/loop_loads.h"
+#include "vmech/dynamics/reactions/open_reactions.h"
 #include "vmech/dynamics/reactions/reactions.h"
 #include "vmech/kinematics/loops/closure.h"
 #include "vmech/kinematics/loops/dimensionless_loops.h"
@@ -25,57 +27,98 @@ MatrixXd DependentColumns(const KinematicTree& tree, const CoordinatePartition& 
   return C_u;
 }
 
-/// Marks the components that a dimensionless set of multipliers loads.
-class LoadMarker {
+/// What the multipliers of a loop, dimensionless, do to a joint [6, rows of the loop]: the wrench
+/// on its second link about M in the axes of F, forces times the characteristic length.
+MatrixXd LoadOnJoint(const KinematicTree& tree, const TreeWorkspace<double>& ws,
+                     const LoopLoad& load, const JointState<double>& joint) {
+  const Loop& loop = tree.loops[load.loop];
+  MatrixXd T(6, loop.rows);
+  for (int i = 0; i < loop.rows; ++i) {
+    const double mu = load.sign / (IsLengthRow(loop.type, i) ? tree.length : 1);
+    const Wrenchd at_joint = WrenchIn(joint.F, mu * ws.loops[load.loop].wrench[i]);
+    T.col(i) << tree.length * at_joint.force, at_joint.moment;
+  }
+  return T;
+}
+
+/// One closed pose, and what multipliers load in it.
+class PoseOfLoops {
  public:
-  LoadMarker(const KinematicTree& tree, const VectorXd& q, double touches)
-      : tree_(tree), touches_(touches), ws_(tree), joints_(tree.mechanism.joints.size()) {
+  PoseOfLoops(const KinematicTree& tree, const VectorXd& q)
+      : tree_(tree), loads_(LoopLoadsOfJoints(tree)), ws_(tree), joints_(loads_.size()) {
     EvaluatePose(tree, q, &ws_);
     JointFrames(tree, ws_, &joints_);
   }
 
-  void Mark(const VectorXd& direction, Certainty verdict, std::vector<JointCertainty>* result) {
-    for (TreeWorkspace<double>::Node& node : ws_.nodes) node.F = {};
-    const VectorXd mu = LoopRowScale(tree_).cwiseProduct(direction);
-    ApplyMultipliers(tree_, mu.data(), &ws_, &joints_);
-    for (size_t j = 0; j < joints_.size(); ++j) {
-      Vector6d load = WrenchIn(joints_[j].F, joints_[j].W).Stacked();
-      load.head<3>() *= tree_.length;
-      for (int i = 0; i < 6; ++i) {
-        if (std::abs(load[i]) > touches_) (*result)[j][i] = verdict;
-      }
+  const TreeWorkspace<double>& ws() const { return ws_; }
+
+  /// By loop; none at a joint that no loop goes through.
+  std::vector<OpenReactions::Block> LoadsOn(size_t joint) const {
+    std::vector<OpenReactions::Block> blocks;
+    for (const LoopLoad& load : loads_[joint]) {
+      blocks.push_back(
+          {static_cast<size_t>(load.loop), LoadOnJoint(tree_, ws_, load, joints_[joint])});
     }
+    return blocks;
+  }
+
+  /// By the directions [rows, n] of multipliers: the largest load of any of them [6].
+  Vector6d LargestLoad(size_t joint, const MatrixXd& directions) const {
+    MatrixXd load = MatrixXd::Zero(6, directions.cols());
+    for (const OpenReactions::Block& block : LoadsOn(joint)) {
+      const Loop& loop = tree_.loops[block.loop];
+      load += block.T * directions.middleRows(loop.row, loop.rows);
+    }
+    return load.cwiseAbs().rowwise().maxCoeff();
   }
 
  private:
   const KinematicTree& tree_;
-  double touches_;
+  std::vector<std::vector<LoopLoad>> loads_;
   TreeWorkspace<double> ws_;
   std::vector<JointState<double>> joints_;
 };
+
+/// The directions of multipliers that the dependent freedoms hardly feel [rows, n].
+MatrixXd SingularDirections(const MatrixXd& C_u) {
+  const LeftSingularVectors svd = FindLeftSingularVectors(C_u);
+  const VectorXd& sigma = svd.values;
+  const auto felt = (sigma.array() > kSingularTolerance * sigma.maxCoeff()).count();
+  return svd.vectors.middleCols(felt, sigma.size() - felt);
+}
+
+void Mark(const Vector6d& load, double touches, Certainty verdict, JointCertainty* joint) {
+  for (int i = 0; i < 6; ++i) {
+    if (load[i] > touches) (*joint)[i] = verdict;
+  }
+}
 
 }  // namespace
 
 std::vector<JointCertainty> JudgeCertainty(const KinematicTree& tree,
                                            const CoordinatePartition& partition, const VectorXd& q,
                                            double rounding) {
+  constexpr double kNearlySingular = 10 * kSingularTolerance;
   JointCertainty all_certain;
   all_certain.fill(Certainty::kCertain);
   std::vector<JointCertainty> result(tree.mechanism.joints.size(), all_certain);
   if (tree.rows == 0) return result;
 
-  const MatrixXd C_u = DependentColumns(tree, partition, q);
-  const LeftSingularVectors svd = FindLeftSingularVectors(C_u);
-  const VectorXd& sigma = svd.values;
-  LoadMarker marker(tree, q, std::max(kTouches, TouchOfRounding(rounding)));
-  // First what grows at a dead centre, then what stays open anywhere.
-  for (Eigen::Index k = 0; k < sigma.size(); ++k) {
-    if (sigma[k] <= kSingularTolerance * sigma[0]) {
-      marker.Mark(svd.vectors.col(k), Certainty::kSingular, &result);
-    }
+  const PoseOfLoops pose(tree, q);
+  const OpenReactions open(tree, partition, pose.ws());
+  const double touches = std::max(kTouches, TouchOfRounding(rounding));
+  MatrixXd singular(tree.rows, 0);
+  if (open.LeastSingularValue() < kNearlySingular) {
+    singular = SingularDirections(DependentColumns(tree, partition, q));
   }
-  for (Eigen::Index k = sigma.size(); k < C_u.rows(); ++k) {
-    marker.Mark(svd.vectors.col(k), Certainty::kNotDetermined, &result);
+  for (size_t j = 0; j < result.size(); ++j) {
+    const std::vector<OpenReactions::Block> loads = pose.LoadsOn(j);
+    if (loads.empty()) continue;
+    // First what grows at a dead centre, then what stays open anywhere.
+    if (singular.cols() > 0) {
+      Mark(pose.LargestLoad(j, singular), touches, Certainty::kSingular, &result[j]);
+    }
+    Mark(open.LargestOpen(loads), touches, Certainty::kNotDetermined, &result[j]);
   }
   return result;
 }

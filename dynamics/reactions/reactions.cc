@@ -39,31 +39,16 @@ std::vector<JointCompliance> CompliancesForRule(const KinematicTree& tree, React
 template <typename T>
 ReactionSolver<T>::ReactionSolver(const KinematicTree& tree, const CoordinatePartition& partition,
                                   const std::vector<JointCompliance>& compliances)
-    : tree_(tree), partition_(partition), loads_(tree.mechanism.joints.size()) {
+    : tree_(tree), partition_(partition), loads_(LoopLoadsOfJoints(tree)) {
   for (const JointCompliance& c : compliances) {
     root_compliances_.push_back(Stacked<double>(c.force, c.moment).cwiseSqrt());
   }
-  FindLoads();
-  OrderUnknowns();
-}
-
-template <typename T>
-void ReactionSolver<T>::FindLoads() {
-  for (size_t l = 0; l < tree_.loops.size(); ++l) {
-    const Loop& loop = tree_.loops[l];
-    const int index = static_cast<int>(l);
-    loads_[loop.joint].push_back({index, 1.0});
-    for (const LoopNode& n : loop.path) {
-      const TreeNode& node = tree_.nodes[n.node];
-      if (tree_.placements[node.joint].tree_node != n.node) continue;
-      loads_[node.joint].push_back({index, node.reversed ? n.sign : -n.sign});
-    }
-  }
   size_t columns = 0;
-  for (const std::vector<Load>& loads : loads_) {
-    for (const Load& load : loads) columns += static_cast<size_t>(tree_.loops[load.loop].rows);
+  for (const std::vector<LoopLoad>& loads : loads_) {
+    for (const LoopLoad& load : loads) columns += static_cast<size_t>(tree_.loops[load.loop].rows);
   }
   columns_.assign(columns, Vector6<T>::Zero());
+  OrderUnknowns();
 }
 
 template <typename T>
@@ -80,9 +65,9 @@ void ReactionSolver<T>::OrderUnknowns() {
   }
   std::vector<int> coupled_from(tree_.loops.size());
   for (size_t l = 0; l < coupled_from.size(); ++l) coupled_from[l] = static_cast<int>(l);
-  for (const std::vector<Load>& loads : loads_) {
-    for (const Load& k : loads) {
-      for (const Load& l : loads) coupled_from[k.loop] = std::min(coupled_from[k.loop], l.loop);
+  for (const std::vector<LoopLoad>& loads : loads_) {
+    for (const LoopLoad& k : loads) {
+      for (const LoopLoad& l : loads) coupled_from[k.loop] = std::min(coupled_from[k.loop], l.loop);
     }
   }
 
@@ -125,7 +110,7 @@ void ReactionSolver<T>::Factor(const TreeWorkspace<T>& ws,
   Vector6<T>* column = columns_.data();
   for (size_t j = 0; j < joints.size(); ++j) {
     const Vector6<T>* first = column;
-    for (const Load& load : loads_[j]) {
+    for (const LoopLoad& load : loads_[j]) {
       const LoopState<T>& loop = ws.loops[load.loop];
       for (int k = 0; k < tree_.loops[load.loop].rows; ++k) {
         *column++ = load.sign * Strain(j, joints[j], loop.wrench[k]);
@@ -139,12 +124,12 @@ void ReactionSolver<T>::Factor(const TreeWorkspace<T>& ws,
 
 /// A += (D^1/2 T_j)' D^1/2 T_j, its lower half.
 template <typename T>
-void ReactionSolver<T>::AddToMatrix(const Vector6<T>* columns, const std::vector<Load>& loads) {
+void ReactionSolver<T>::AddToMatrix(const Vector6<T>* columns, const std::vector<LoopLoad>& loads) {
   const Vector6<T>* of_k = columns;
-  for (const Load& k : loads) {
+  for (const LoopLoad& k : loads) {
     const int rows_k = tree_.loops[k.loop].rows;
     const Vector6<T>* of_l = columns;
-    for (const Load& l : loads) {
+    for (const LoopLoad& l : loads) {
       const int rows_l = tree_.loops[l.loop].rows;
       for (int i = 0; k.loop >= l.loop && i < rows_k; ++i) {
         const int count = k.loop == l.loop ? i + 1 : rows_l;
@@ -181,7 +166,7 @@ void ReactionSolver<T>::Solve(const std::vector<JointState<T>>& joints, const T*
   for (size_t j = 0; j < joints.size(); ++j) {
     if (loads_[j].empty()) continue;
     const Vector6<T> strain = Strain(j, joints[j], joints[j].W);
-    for (const Load& load : loads_[j]) {
+    for (const LoopLoad& load : loads_[j]) {
       T* b = &unknowns_[row_position_[load.loop]];
       for (int i = 0; i < tree_.loops[load.loop].rows; ++i) *b++ -= (column++)->dot(strain);
     }

@@ -4,6 +4,7 @@
 
 #include "vmech/base/linear_algebra/envelope_ldlt.h"
 #include "vmech/dynamics/reactions/joint_wrenches.h"
+#include "vmech/dynamics/reactions/loop_loads.h"
 #include "vmech/dynamics/reactions/rule.h"
 #include "vmech/kinematics/loops/coordinate_partition.h"
 
@@ -49,26 +50,19 @@ class ReactionSolver {
   void Solve(const std::vector<JointState<T>>& joints, const T* r, T* mu);
 
  private:
-  /// A loop that loads a joint, and the sense in which mu enters W.
-  struct Load {
-    int loop;
-    double sign;
-  };
-
-  void FindLoads();
   void OrderUnknowns();
-  void AddToMatrix(const Vector6<T>* columns, const std::vector<Load>& loads);
+  void AddToMatrix(const Vector6<T>* columns, const std::vector<LoopLoad>& loads);
   void AddJacobianToMatrix(const TreeWorkspace<T>& ws);
   /// D^1/2 W in the joint's frame.
   Vector6<T> Strain(size_t joint, const JointState<T>& state, const ScrewT<T>& W) const;
 
   const KinematicTree& tree_;
   const CoordinatePartition& partition_;
-  std::vector<Vector6d> root_compliances_;  ///< D^1/2 per joint
-  std::vector<std::vector<Load>> loads_;    ///< per joint
-  std::vector<int> row_position_;           ///< per loop: place of its first row among the unknowns
-  std::vector<int> dependent_position_;     ///< per dependent velocity
-  std::vector<Vector6<T>> columns_;         ///< of D^1/2 T, joint by joint and load by load
+  std::vector<Vector6d> root_compliances_;    ///< D^1/2 per joint
+  std::vector<std::vector<LoopLoad>> loads_;  ///< per joint
+  std::vector<int> row_position_;        ///< per loop: place of its first row among the unknowns
+  std::vector<int> dependent_position_;  ///< per dependent velocity
+  std::vector<Vector6<T>> columns_;      ///< of D^1/2 T, joint by joint and load by load
   std::vector<T> unknowns_;
   EnvelopeLdlt<T> matrix_;
 };

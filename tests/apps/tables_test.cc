@@ -31,18 +31,19 @@ StudyFile TurningStudy(const std::string& joint_name) {
 LoadStudyResult TurningResult() {
   LoadStudyResult result;
   result.certainty.resize(1);
+  const auto loads = std::make_shared<LoadArrays>(
+      LoadArrays::Shape{.poses = kPoses, .drives = 1, .freedoms = {1}, .links = 2});
   for (int i = 0; i < kPoses; ++i) {
     const double angle = kTurns * 2 * std::numbers::pi * i / kPoses;
-    PoseLoads pose;
-    pose.time = 0.001 * i;
-    pose.drives.resize(1);
-    pose.drives[0].position = angle;
-    pose.drives[0].force = -0.0;
-    pose.joints = {{Wrenchd{{1.0 / 3, -0.0, 1e-300}, {1e22, -2.5e-7, angle}}}};
-    pose.links.resize(2);
-    pose.links[1].X_WL.R = Eigen::AngleAxisd(angle, Vector3d::UnitZ()).toRotationMatrix();
-    result.poses.push_back(pose);
+    loads->times[i] = 0.001 * i;
+    loads->drives[i].position = angle;
+    loads->drive_forces[i] = -0.0;
+    const double wrench[] = {1.0 / 3, -0.0, 1e-300, 1e22, -2.5e-7, angle};
+    std::copy_n(wrench, 6, &loads->wrenches[6 * i]);
+    loads->power_errors[i] = 0;
+    loads->links[2 * i + 1].X_WL.R = Eigen::AngleAxisd(angle, Vector3d::UnitZ()).toRotationMatrix();
   }
+  result.poses = PoseSeries(loads);
   return result;
 }
 

@@ -6,6 +6,8 @@
 #include "kernels.h"
 #include "vmech/base/packet.h"
 #include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/pose/pose_loads.h"
+#include "vmech/dynamics/loads/pose/store_pose_loads.h"
 #include "vmech/dynamics/loads/prepare_study.h"
 #include "vmech/dynamics/loads/track_motion.h"
 #include "vmech/dynamics/loads/pose/pose_loads.h"
@@ -22,7 +24,7 @@ std::function<void()> SliderCrankPose() {
     PreparedStudy prepared = PrepareStudy(study);
     Motion motion = TrackMotion(study, prepared, 1e-13);
     LoadWorkspace<T> ws{prepared.model};
-    PoseLoads loads[kLanesOf<T>];
+    LoadArrays loads = MakeLoadArrays(prepared.model, motion, false);
     size_t next = 0;
   };
   auto state = std::make_shared<State>();
@@ -30,7 +32,7 @@ std::function<void()> SliderCrankPose() {
     const LoadModel& model = state->prepared.model;
     const size_t pose = state->next;
     if (!EvaluatePoseLoads(model, state->motion, pose, &state->ws)) std::abort();
-    StorePoseLoads(model, state->motion, pose, state->ws, false, state->loads);
+    StorePoseLoads(model, state->motion, pose, state->ws, &state->loads);
     state->next = (pose + kLanesOf<T>) % state->motion.size();
   };
 }

@@ -102,10 +102,15 @@ LoadScale ScaleOf(const Mechanism& mechanism, const PoseLoads& pose) {
 }
 
 double RelativeDifference(const Mechanism& mechanism, const PoseLoads& a, const PoseLoads& b) {
+  return RelativeDifference(mechanism, a, std::vector<Wrenchd>(b.joints.begin(), b.joints.end()));
+}
+
+double RelativeDifference(const Mechanism& mechanism, const PoseLoads& a,
+                          const std::vector<Wrenchd>& b) {
   const LoadScale scale = ScaleOf(mechanism, a);
   double largest = 0;
   for (size_t j = 0; j < a.joints.size(); ++j) {
-    const Wrenchd difference = a.joints[j] - b.joints[j];
+    const Wrenchd difference = a.joints[j] - b[j];
     largest = std::max(
         {largest, difference.force.norm() / scale.force, difference.moment.norm() / scale.moment});
   }

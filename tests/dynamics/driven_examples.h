@@ -39,6 +39,8 @@ LoadScale ScaleOf(const Mechanism& mechanism, const PoseLoads& pose);
 
 /// Largest difference of two poses' joint wrenches, relative to the scale of the first.
 double RelativeDifference(const Mechanism& mechanism, const PoseLoads& a, const PoseLoads& b);
+double RelativeDifference(const Mechanism& mechanism, const PoseLoads& a,
+                          const std::vector<Wrenchd>& b);
 /// And of all poses of two studies.
 double RelativeDifference(const Mechanism& mechanism, const LoadStudyResult& a,
                           const LoadStudyResult& b);

@@ -9,6 +9,8 @@
 #include "driven_examples.h"
 #include "vmech/base/packet.h"
 #include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/pose/pose_loads.h"
+#include "vmech/dynamics/loads/pose/store_pose_loads.h"
 #include "vmech/dynamics/loads/prepare_study.h"
 #include "vmech/dynamics/loads/run_load_study.h"
 #include "vmech/dynamics/loads/track_motion.h"
@@ -44,15 +46,16 @@ TEST(PacketOfPoses, IsEachPoseOfItsOwn) {
     LoadWorkspace<double> ws(prepared.model);
     LoadWorkspace<Packet> packet_ws(prepared.model);
     ASSERT_TRUE(EvaluatePoseLoads(prepared.model, motion, 4, &packet_ws));
-    std::vector<PoseLoads> poses(Packet::kLanes);
-    StorePoseLoads(prepared.model, motion, 4, packet_ws, true, poses.data());
+    const auto loads = std::make_shared<LoadArrays>(MakeLoadArrays(prepared.model, motion, true));
+    const auto single = std::make_shared<LoadArrays>(*loads);
+    StorePoseLoads(prepared.model, motion, 4, packet_ws, loads.get());
     for (int lane = 0; lane < Packet::kLanes; ++lane) {
-      PoseLoads alone;
       ASSERT_TRUE(EvaluatePoseLoads(prepared.model, motion, 4 + lane, &ws));
-      StorePoseLoads(prepared.model, motion, 4 + lane, ws, true, &alone);
-      EXPECT_LT(RelativeDifference(study.mechanism, alone, poses[lane]), kRounding) << example.name;
-      EXPECT_NEAR(alone.power, poses[lane].power, kRounding * (1 + std::abs(alone.power)));
-      EXPECT_EQ(alone.time, poses[lane].time);
+      StorePoseLoads(prepared.model, motion, 4 + lane, ws, single.get());
+      const PoseLoads alone(single, 4 + lane), together(loads, 4 + lane);
+      EXPECT_LT(RelativeDifference(study.mechanism, alone, together), kRounding) << example.name;
+      EXPECT_NEAR(alone.power, together.power, kRounding * (1 + std::abs(alone.power)));
+      EXPECT_EQ(alone.time, together.time);
     }
   }
 }

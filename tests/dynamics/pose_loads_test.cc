@@ -8,6 +8,7 @@
 #include "driven_examples.h"
 #include "support/count_allocations.h"
 #include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/pose/store_pose_loads.h"
 #include "vmech/dynamics/loads/prepare_study.h"
 #include "vmech/dynamics/loads/track_motion.h"
 
@@ -21,13 +22,12 @@ TEST_P(EveryPose, IsEvaluatedWithoutAllocation) {
   const PreparedStudy prepared = PrepareStudy(study);
   const Motion motion = TrackMotion(study, prepared, 1e-13);
   LoadWorkspace<double> ws(prepared.model);
-  PoseLoads pose;
+  LoadArrays loads = MakeLoadArrays(prepared.model, motion, true);
   ASSERT_TRUE(EvaluatePoseLoads(prepared.model, motion, 0, &ws));
-  StorePoseLoads(prepared.model, motion, 0, ws, true, &pose);
   const long before = allocations;
   for (size_t i = 0; i < motion.size(); ++i) {
     ASSERT_TRUE(EvaluatePoseLoads(prepared.model, motion, i, &ws));
-    StorePoseLoads(prepared.model, motion, i, ws, true, &pose);
+    StorePoseLoads(prepared.model, motion, i, ws, &loads);
   }
   EXPECT_EQ(allocations - before, 0);
 }

@@ -10,6 +10,8 @@
 #include "driven_examples.h"
 #include "free_bodies.h"
 #include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/pose/pose_loads.h"
+#include "vmech/dynamics/loads/pose/store_pose_loads.h"
 #include "vmech/dynamics/loads/prepare_study.h"
 #include "vmech/dynamics/loads/run_load_study.h"
 #include "vmech/dynamics/loads/pose/pose_loads.h"
@@ -105,17 +107,15 @@ PoseLoads LoadsOfStructure(const LoadStudy& study) {
   motion.coordinates.assign(q.begin(), q.end());
   motion.cut_positions.assign(model.tree.loops.size(), Vector3d::Zero());
   LoadWorkspace<double> ws(model);
-  PoseLoads pose;
+  const auto loads = std::make_shared<LoadArrays>(MakeLoadArrays(model, motion, true));
   EXPECT_TRUE(EvaluatePoseLoads(model, motion, 0, &ws));
-  StorePoseLoads(model, motion, 0, ws, true, &pose);
-  return pose;
+  StorePoseLoads(model, motion, 0, ws, loads.get());
+  return {loads, 0};
 }
 
 double DifferenceFrom(const std::vector<Wrenchd>& expected, const Mechanism& mechanism,
                       const PoseLoads& pose) {
-  PoseLoads other = pose;
-  for (size_t j = 0; j < expected.size(); ++j) static_cast<Wrenchd&>(other.joints[j]) = expected[j];
-  return RelativeDifference(mechanism, pose, other);
+  return RelativeDifference(mechanism, pose, expected);
 }
 
 class RulesOf : public testing::TestWithParam<const char*> {};

@@ -3,7 +3,6 @@
 #include <memory>
 #include <vector>
 
-#include "vmech/dynamics/loads/load_result.h"
 #include "vmech/mechanisms/mechanism.h"
 
 namespace vmech::peers {

@@ -3,6 +3,8 @@
 #include <stdexcept>
 
 #include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/pose/pose_loads.h"
+#include "vmech/dynamics/loads/pose/store_pose_loads.h"
 #include "vmech/dynamics/loads/prepare_study.h"
 #include "vmech/dynamics/loads/run_load_study.h"
 #include "vmech/dynamics/loads/pose/pose_loads.h"
@@ -89,14 +91,14 @@ HeldLoads LoadsInHand(const Mechanism& mechanism, const std::string& grasp,
   motion.coordinates.assign(prepared.q_start.begin(), prepared.q_start.end());
   motion.cut_positions.assign(prepared.model.tree.loops.size(), Vector3d::Zero());
 
-  HeldLoads result;
+  const auto loads = std::make_shared<LoadArrays>(MakeLoadArrays(prepared.model, motion, true));
   LoadWorkspace<double> workspace(prepared.model);
   if (!EvaluatePoseLoads(prepared.model, motion, 0, &workspace)) {
     throw std::runtime_error("the hand does not determine the motion");
   }
-  StorePoseLoads(prepared.model, motion, 0, workspace, true, &result.loads);
-  result.hand = result.loads.hand;
-  return result;
+  StorePoseLoads(prepared.model, motion, 0, workspace, loads.get());
+  const PoseLoads pose(loads, 0);
+  return {pose, pose.hand};
 }
 
 ExternalLoad Force(const Mechanism& mechanism, const std::string& link, const Vector3d& p_L,

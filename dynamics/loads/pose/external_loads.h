@@ -17,7 +17,7 @@ double TableArgument(const LoadModel& model, const ExternalLoad& load, const Mot
                      size_t pose);
 
 /// All external wrenches at the poses `pose`, ... about their points of application, world axes.
-/// Needs X_WB; writes ws->external_W.
+/// Needs X; writes ws->external.
 template <typename T>
 void EvaluateExternalLoads(const LoadModel& model, const Motion& motion, size_t pose,
                            LoadWorkspace<T>* ws);

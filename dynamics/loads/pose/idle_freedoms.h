@@ -21,11 +21,11 @@ namespace vmech {
 /// ws->idle_motions.
 void FindMotions(const LoadModel& model, LoadWorkspace<double>* ws);
 
-/// Adds to ws->v the idle motion that takes its momentum away. Needs X_WB and ws->motions.
+/// Adds to ws->v the idle motion that takes its momentum away. Needs X and ws->motions.
 void RemoveIdleMomentum(const LoadModel& model, LoadWorkspace<double>* ws);
 
 /// Adds to ws->vdot the idle acceleration that leaves no force open along the idle freedoms; brings
-/// accelerations, F_Bo and tau up to date. Writes ws->unresisted, the force that is left where no
+/// accelerations, F and tau up to date. Writes ws->unresisted, the force that is left where no
 /// inertia takes it.
 void SettleIdleFreedoms(const LoadModel& model, LoadWorkspace<double>* ws);
 
@@ -51,7 +51,7 @@ class IdlePositions {
 };
 
 /// How much velocities v shift the centre of gravity of any link, in characteristic lengths: above
-/// roundoff, weight and inertia depend on them. Needs X_WB; node velocities are scratch.
+/// roundoff, weight and inertia depend on them. Needs X; node velocities are scratch.
 double ShiftOfCentres(const KinematicTree& tree, const VectorXd& v, TreeWorkspace<double>* ws);
 
 }  // namespace vmech

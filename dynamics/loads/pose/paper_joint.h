@@ -13,7 +13,7 @@ namespace vmech {
 /// the answer depends on the cut. For comparison with the paper only. C [6 per loop, nv].
 VectorXd MinimumNormWrenches(const MatrixXd& J, const MatrixXd& C, const VectorXd& tau);
 
-/// Solves ws->tau - ws->passive for all wrenches of a pose in this way; applies them to F_Bo and
+/// Solves ws->tau - ws->passive for all wrenches of a pose in this way; applies them to F and
 /// writes those of the cut joints.
 void SolvePaperJoint(const LoadModel& model, LoadWorkspace<double>* ws);
 

@@ -6,7 +6,6 @@
 #include "vmech/base/dual.h"
 #include "vmech/base/packet.h"
 #include "vmech/base/screw_algebra.h"
-#include "vmech/dynamics/loads/load_result.h"
 #include "vmech/dynamics/loads/pose/external_loads.h"
 #include "vmech/dynamics/loads/pose/hand_wrench.h"
 #include "vmech/dynamics/loads/pose/idle_freedoms.h"
@@ -259,25 +258,6 @@ void DriveForces(const LoadModel& model, LoadWorkspace<T>* ws) {
   }
 }
 
-/// Motion of a link's drawing frame, world axes.
-template <typename T>
-void StoreLinkMotion(const TreeWorkspace<T>& tree, int index, int link, PoseLoads* poses) {
-  const typename TreeWorkspace<T>::Node& s = tree.at(index);
-  const FrameT<T> L = s.X * s.X_BL;
-  const ScrewT<T> A = s.A - tree.at(-1).A;
-  const Triple<T> v = VelocityAt(L.p, s.V);
-  const Triple<T> a = VelocityAt(L.p, A) + Cross(s.V.angular, v);
-  const Pose<T> X = PoseOf(L);
-  for (int lane = 0; lane < kLanesOf<T>; ++lane) {
-    LinkMotion& motion = poses[lane].links[link];
-    motion.X_WL = {Lane(X.R, lane), Lane(X.p, lane) + tree.reference};
-    motion.v = Lane(Vector3Of(v), lane);
-    motion.w = Lane(Vector3Of(s.V.angular), lane);
-    motion.a = Lane(Vector3Of(a), lane);
-    motion.alpha = Lane(Vector3Of(A.angular), lane);
-  }
-}
-
 }  // namespace
 
 bool RunsInPackets(const LoadModel& model) {
@@ -318,58 +298,13 @@ bool EvaluatePoseLoads(const LoadModel& model, const Motion& motion, size_t pose
   return true;
 }
 
-template <typename T>
-void StorePoseLoads(const LoadModel& model, const Motion& motion, size_t pose,
-                    const LoadWorkspace<T>& ws, bool link_motions, PoseLoads* poses) {
-  for (int lane = 0; lane < kLanesOf<T>; ++lane) {
-    PoseLoads& out = poses[lane];
-    out.time = motion.times[pose + lane];
-    out.drives.clear();
-    out.drives.reserve(model.drives.size());
-    for (size_t k = 0; k < model.drives.size(); ++k) {
-      out.drives.push_back(
-          {DriveAt(model, motion, pose + lane, k), Lane(ws.drive_forces[k], lane)});
-    }
-    out.joints.clear();
-    out.joints.reserve(ws.loads.size());
-    for (const JointLoad<T>& load : ws.loads) {
-      out.joints.push_back({{Lane(load.W_F.force, lane), Lane(load.W_F.moment, lane)},
-                            Lane(load.position, lane),
-                            Lane(load.rate, lane)});
-    }
-    out.links.resize(link_motions ? model.tree.mechanism.links.size() : 0);
-    out.power = Lane(ws.power, lane);
-    out.power_error = Lane(ws.power_gap, lane);
-    out.power_error_scale = Lane(ws.power_size, lane);
-    out.smallest_pivot = Lane(ws.dependents.smallest_pivot(), lane);
-    out.closure = Lane(ws.closure, lane);
-    out.jammed = ws.jammed;
-    out.unresisted = ws.unresisted;
-    out.locking_joint = ws.locking_joint;
-    out.held_by_friction = ws.held_by_friction;
-  }
-  for (size_t link = 0; link < poses[0].links.size(); ++link) {
-    const int index = model.tree.NodeOfLink(static_cast<int>(link));
-    if (index < 0) continue;
-    StoreLinkMotion(ws.tree, index, static_cast<int>(link), poses);
-  }
-  if constexpr (kSinglePose<T>) {
-    if (!model.hand) return;
-    poses->hand = ws.hand;
-    poses->hand_error = (motion.hand[pose].X_WH.p - GraspPose(model, ws.tree).p).norm();
-  }
-}
-
 // NOLINTBEGIN(bugprone-macro-parentheses): T is a type
-#define VMECH_INSTANTIATE(T)                                                                      \
-  template bool EvaluatePoseLoads<T>(const LoadModel&, const Motion&, size_t, LoadWorkspace<T>*); \
-  template void StorePoseLoads<T>(const LoadModel&, const Motion&, size_t,                        \
-                                  const LoadWorkspace<T>&, bool, PoseLoads*);
+#define VMECH_INSTANTIATE(T) \
+  template bool EvaluatePoseLoads<T>(const LoadModel&, const Motion&, size_t, LoadWorkspace<T>*);
 VMECH_INSTANTIATE(double)
+VMECH_INSTANTIATE(Dual)
 VMECH_INSTANTIATE(Packet)
 #undef VMECH_INSTANTIATE
-template bool EvaluatePoseLoads<Dual>(const LoadModel&, const Motion&, size_t,
-                                      LoadWorkspace<Dual>*);
 // NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace vmech

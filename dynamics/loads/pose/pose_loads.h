@@ -1,6 +1,5 @@
 #pragma once
 
-#include "vmech/dynamics/loads/load_result.h"
 #include "vmech/dynamics/loads/pose/load_model.h"
 #include "vmech/dynamics/loads/pose/load_workspace.h"
 #include "vmech/dynamics/loads/pose/study_motion.h"
@@ -19,11 +18,5 @@ bool RunsInPackets(const LoadModel& model);
 template <typename T>
 [[nodiscard]] bool EvaluatePoseLoads(const LoadModel& model, const Motion& motion, size_t pose,
                                      LoadWorkspace<T>* ws);
-
-/// Copies what was computed last to poses[0], poses[1], ... (as many as T has lanes), with the
-/// motion of every link if wanted. They keep their memory.
-template <typename T>
-void StorePoseLoads(const LoadModel& model, const Motion& motion, size_t pose,
-                    const LoadWorkspace<T>& ws, bool link_motions, PoseLoads* poses);
 
 }  // namespace vmech

@@ -26,8 +26,9 @@ struct Example {
   StudyOutcome outcome;
   LoadStudy& study = file.study;
   LoadStudyResult& result = outcome.loads;
+  std::shared_ptr<LoadArrays> loads;  ///< behind the result
 
-  Example() {
+  explicit Example(int poses = kPoses) {
     Mechanism& mechanism = study.mechanism;
     mechanism.name = "test crank";
     file.name = "test study";
@@ -37,22 +38,24 @@ struct Example {
     study.drives = {{0, 0, MotionLaw::Uniform(0, kSpeed)}};
     result.certainty.push_back({});
     result.mobility = 1;
-    for (int i = 0; i < kPoses; ++i) AddPose(2 * std::numbers::pi * i / (kPoses - 1));
+    loads = std::make_shared<LoadArrays>(
+        LoadArrays::Shape{.poses = static_cast<size_t>(poses), .drives = 1, .freedoms = {1}});
+    for (int i = 0; i < poses; ++i) EnterPose(i, 2 * std::numbers::pi * i / (kPoses - 1));
+    result.poses = PoseSeries(loads);
   }
 
-  void AddPose(double angle) {
-    PoseLoads pose;
-    pose.time = angle / kSpeed;
-    pose.drives = {{{angle, kSpeed, 0}, 12.5 * std::cos(angle)}};
+  void EnterPose(size_t i, double angle) {
+    loads->times[i] = angle / kSpeed;
+    loads->drives[i] = {angle, kSpeed, 0};
+    loads->drive_forces[i] = 12.5 * std::cos(angle);
     const double radial = 1000 + 500 * std::max(0.0, std::sin(angle));
-    Wrenchd wrench;
-    wrench.force = {radial * std::cos(angle), radial * std::sin(angle), 50};
-    wrench.moment = {0, 3, 0};
-    pose.joints = {{wrench, {angle, 0, 0}, {kSpeed, 0, 0}}};
-    pose.power = pose.drives[0].force * kSpeed;
-    pose.power_error = 1e-14;
-    study.times.push_back(pose.time);
-    result.poses.push_back(pose);
+    const double wrench[] = {radial * std::cos(angle), radial * std::sin(angle), 50, 0, 3, 0};
+    std::copy_n(wrench, 6, &loads->wrenches[6 * i]);
+    loads->positions[i] = angle;
+    loads->rates[i] = kSpeed;
+    loads->powers[i] = loads->drive_forces[i] * kSpeed;
+    loads->power_errors[i] = 1e-14;
+    study.times.push_back(loads->times[i]);
   }
 
   Example& WithBearings(LoadCertainty certainty = LoadCertainty::kCertain) {
@@ -147,8 +150,8 @@ TEST(LoadReport, HostileNamesStayNames) {
 
 TEST(LoadReport, NumbersThatAreNotFiniteAreShownAsDashes) {
   Example example;
-  example.result.poses[10].joints[0].force.x() = std::numeric_limits<double>::quiet_NaN();
-  example.result.poses[11].power = std::numeric_limits<double>::infinity();
+  example.loads->wrenches[60] = std::numeric_limits<double>::quiet_NaN();
+  example.loads->powers[11] = std::numeric_limits<double>::infinity();
   const std::string page = example.Render();
   ExpectWellFormed(page);
   for (const char* word : {"nan", "NaN", ">inf", "-inf"})
@@ -174,7 +177,9 @@ TEST(LoadReport, BearingsStandWithTheirReasons) {
 
 TEST(LoadReport, SaysThatNoBearingFits) {
   Example example;
-  for (PoseLoads& pose : example.result.poses) pose.joints[0].force *= 1000;
+  for (int i = 0; i < kPoses; ++i) {
+    for (int k = 0; k < 3; ++k) example.loads->wrenches[6 * i + k] *= 1000;
+  }
   const std::string page = example.WithBearings().Render();
   EXPECT_TRUE(Contains(page, "no bearing of the catalogue fits"));
 }
@@ -188,7 +193,7 @@ TEST(LoadReport, ResultsOfAnotherMechanismAreRefused) {
   example.study.mechanism.joints.push_back(example.study.mechanism.joints[0]);
   EXPECT_THROW(example.Render(), std::invalid_argument);
   Example without_poses;
-  without_poses.result.poses.clear();
+  without_poses.result.poses = PoseSeries();
   EXPECT_THROW(without_poses.Render(), std::invalid_argument);
   Example without_bearings;
   without_bearings.WithBearings().outcome.bearings.clear();
@@ -196,8 +201,7 @@ TEST(LoadReport, ResultsOfAnotherMechanismAreRefused) {
 }
 
 TEST(LoadReport, ASinglePoseIsEnough) {
-  Example example;
-  example.result.poses.resize(1);
+  const Example example(1);
   ExpectWellFormed(example.Render());
 }
 
@@ -238,7 +242,7 @@ TEST(CertaintyWords, WhereAllIsCertainNoRuleIsNamed) {
 TEST(Cycle, RunsOverTimeWhereTheDriveTurnsBack) {
   Example example;
   EXPECT_EQ(CycleOf(example.study, example.result).axis.unit, "°");
-  example.result.poses[5].drives[0].position = 0;
+  example.loads->drives[5].position = 0;
   EXPECT_EQ(CycleOf(example.study, example.result).axis.unit, "s");
 }
 
@@ -247,7 +251,7 @@ Example Turned(double from, double to) {
   Example example;
   for (int i = 0; i < kPoses; ++i) {
     const double degrees = from + (to - from) * i / (kPoses - 1);
-    example.result.poses[i].drives[0].position = degrees * std::numbers::pi / 180;
+    example.loads->drives[i].position = degrees * std::numbers::pi / 180;
   }
   return example;
 }
@@ -273,13 +277,19 @@ TEST(Cycle, MarksTheDeadCentresOfWhatStandsOnTheGround) {
   Example example = Turned(-60, 300);
   example.study.mechanism.joints.push_back(
       MakeJoint("guide", JointType::kPrismatic, {0, 0}, {1, 0}));
-  for (PoseLoads& pose : example.result.poses) {
-    const double angle = pose.drives[0].position - 0.3;
-    JointSample guide = pose.joints[0];
-    guide.rate = {kSpeed * std::sin(angle), 0, 0};
-    example.result.certainty.resize(2);
-    pose.joints = {pose.joints[0], guide};
+  example.result.certainty.resize(2);
+  const auto both = std::make_shared<LoadArrays>(
+      LoadArrays::Shape{.poses = kPoses, .drives = 1, .freedoms = {1, 1}});
+  both->drives = example.loads->drives;
+  both->drive_forces = example.loads->drive_forces;
+  for (int i = 0; i < kPoses; ++i) {
+    for (int j = 0; j < 2; ++j) {
+      std::copy_n(&example.loads->wrenches[6 * i], 6, &both->wrenches[6 * (2 * i + j)]);
+    }
+    both->rates[2 * i] = kSpeed;
+    both->rates[2 * i + 1] = kSpeed * std::sin(both->drives[i].position - 0.3);
   }
+  example.result.poses = PoseSeries(both);
   const std::string words = DescribeDeadCentres(example.study, example.result);
   EXPECT_EQ(words, "guide turns back at 17.19° and 197.2°");  // 0.3 rad, and pi more
   const Cycle cycle = CycleOf(example.study, example.result);

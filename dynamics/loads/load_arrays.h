@@ -1,0 +1,227 @@
+#pragma once
+
+#include <iterator>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "vmech/base/pose.h"
+#include "vmech/kinematics/motion/motion_law.h"
+#include "vmech/mechanisms/mechanism.h"
+
+namespace vmech {
+
+/// Motion of one link's drawing frame, world axes.
+struct LinkMotion {
+  Posed X_WL;
+  Vector3d v = Vector3d::Zero(),
+           w = Vector3d::Zero();  ///< velocity of Lo [m/s], angular velocity [rad/s]
+  Vector3d a = Vector3d::Zero(),
+           alpha =
+               Vector3d::Zero();  ///< acceleration of Lo [m/s^2], angular acceleration [rad/s^2]
+};
+
+/// A motor, and the force that it exerts [N] or [N m].
+struct DriveSample : MotionSample {
+  double force = 0;
+};
+
+/// A joint, and the wrench which its first link exerts on the second, at the second anchor's
+/// origin, in the axes of the first anchor.
+struct JointSample : Wrenchd {
+  Vector3d position = Vector3d::Zero();  ///< coordinates of its freedoms, unwrapped
+  Vector3d rate = Vector3d::Zero();
+};
+
+/// What the hand does to the mechanism at a pose.
+struct HandLoad {
+  Wrenchd wrench;    ///< w_d at Go, world axes
+  double error = 0;  ///< distance that the hand is off the grasp frame [m]
+};
+
+/// What friction and idle freedoms make of a pose.
+struct PoseState {
+  double unresisted = 0;  ///< largest force along an idle freedom without inertia [N], [N m]
+  /// Load-dependent friction has no equilibrium here: the mechanism locks itself. The joint
+  /// wrenches are those of the last iteration.
+  bool jammed = false;
+  int locking_joint = -1;  ///< where jammed: the joint whose friction takes the most power
+  /// The drive stands still and dry friction alone holds what it would have to hold.
+  bool held_by_friction = false;
+};
+
+/// Like std::allocator, but numbers start undefined: they are written once, when they are known.
+template <typename T>
+struct UndefinedStart : std::allocator<T> {
+  template <typename U>
+  struct rebind {
+    using other = UndefinedStart<U>;
+  };
+  template <typename U>
+  void construct(U* /*number*/) noexcept {}
+  template <typename U, typename Value>
+  void construct(U* number, const Value& value) {
+    *number = value;
+  }
+};
+
+/// The loads at every pose of a study, one array for each quantity with the pose as its first
+/// index, so that a program can read a whole history, such as [poses, joints, 6], where it lies.
+struct LoadArrays {
+  using Array = std::vector<double, UndefinedStart<double>>;
+
+  /// How many there are of everything.
+  struct Shape {
+    size_t poses = 0, drives = 0;
+    std::vector<int> freedoms;    ///< of each joint
+    size_t links = 0;             ///< 0 if their motion is not wanted
+    bool has_hand = false;        ///< a hand drives
+    bool has_pose_state = false;  ///< there may be something to say in PoseState
+  };
+
+  LoadArrays() = default;
+  /// The numbers of the arrays are undefined, everything else has its defaults.
+  explicit LoadArrays(const Shape& shape);
+
+  size_t pose_count() const { return times.size(); }
+  size_t drive_count = 0;
+  size_t joint_count() const { return first_freedom.size() - 1; }
+  size_t freedom_count() const { return static_cast<size_t>(first_freedom.back()); }
+  size_t link_count = 0;
+
+  /// One joint at one pose.
+  JointSample Joint(size_t pose, size_t joint) const;
+  Wrenchd Wrench(size_t pose, size_t joint) const {
+    const double* w = &wrenches[6 * (pose * joint_count() + joint)];
+    return {{w[0], w[1], w[2]}, {w[3], w[4], w[5]}};
+  }
+  DriveSample Drive(size_t pose, size_t drive) const {
+    const size_t at = pose * drive_count + drive;
+    return {drives[at], drive_forces[at]};
+  }
+
+  std::vector<int> first_freedom{0};  ///< [joints + 1] where a joint's freedoms begin
+  std::vector<double> times;          ///< [poses] [s]
+  std::vector<MotionSample> drives;   ///< [poses, drives] what is prescribed
+  Array drive_forces;                 ///< [poses, drives] [N], [N m]
+  Array wrenches;                     ///< [poses, joints, fx fy fz mx my mz], as JointSample
+  Array positions, rates;             ///< [poses, freedoms], as JointSample
+  Array powers;                       ///< [poses] of the drives and the hand [W]
+  /// [poses] power in, less d/dt energy and losses, over the largest sum of the terms at any pose
+  /// of the study.
+  Array power_errors;
+  Array power_error_scales;  ///< [poses] the sum of those terms [W]
+  /// [poses] sin^2 of the angle by which the drive's hold on the mechanism is short of none; 0 at a
+  /// dead centre.
+  Array smallest_pivots;
+  Array closures;  ///< [poses] loop error that is left, dimensionless
+  std::vector<LinkMotion>
+      links;                    ///< [poses, links], empty if LoadStudyOptions::link_motions is off
+  std::vector<HandLoad> hands;  ///< [poses], empty unless a hand drives
+  std::vector<PoseState> states;  ///< [poses], empty where all would be PoseState()
+};
+
+/// The freedoms of each joint, as LoadArrays::Shape asks for them.
+std::vector<int> FreedomsOfJoints(const Mechanism& mechanism);
+
+/// Walks over what an object gives by its operator[].
+template <typename Range>
+class IndexIterator {
+ public:
+  using iterator_category = std::input_iterator_tag;
+  using value_type = typename Range::value_type;
+  using difference_type = ptrdiff_t;
+  using pointer = void;
+  using reference = value_type;
+
+  IndexIterator(const Range* range, size_t index) : range_(range), index_(index) {}
+  value_type operator*() const { return (*range_)[index_]; }
+  IndexIterator& operator++() {
+    ++index_;
+    return *this;
+  }
+  bool operator==(const IndexIterator& other) const { return index_ == other.index_; }
+
+ private:
+  const Range* range_;
+  size_t index_;
+};
+
+/// The joints at one pose.
+class JointLoads {
+ public:
+  using value_type = JointSample;
+
+  JointLoads() = default;
+  JointLoads(const LoadArrays* arrays, size_t pose) : arrays_(arrays), pose_(pose) {}
+  size_t size() const { return arrays_ == nullptr ? 0 : arrays_->joint_count(); }
+  JointSample operator[](size_t joint) const { return arrays_->Joint(pose_, joint); }
+  IndexIterator<JointLoads> begin() const { return {this, 0}; }
+  IndexIterator<JointLoads> end() const { return {this, size()}; }
+
+ private:
+  const LoadArrays* arrays_ = nullptr;
+  size_t pose_ = 0;
+};
+
+/// The joint drives at one pose.
+class DriveLoads {
+ public:
+  using value_type = DriveSample;
+
+  DriveLoads() = default;
+  DriveLoads(const LoadArrays* arrays, size_t pose) : arrays_(arrays), pose_(pose) {}
+  size_t size() const { return arrays_ == nullptr ? 0 : arrays_->drive_count; }
+  DriveSample operator[](size_t drive) const { return arrays_->Drive(pose_, drive); }
+  IndexIterator<DriveLoads> begin() const { return {this, 0}; }
+  IndexIterator<DriveLoads> end() const { return {this, size()}; }
+
+ private:
+  const LoadArrays* arrays_ = nullptr;
+  size_t pose_ = 0;
+};
+
+/// One pose of the study: a view that keeps the arrays alive which it looks into.
+struct PoseLoads : PoseState {
+  PoseLoads() = default;
+  PoseLoads(std::shared_ptr<const LoadArrays> arrays, size_t pose);
+
+  double time = 0;
+  DriveLoads drives;      ///< of each joint drive
+  Wrenchd hand;           ///< w_d: what the hand does to the mechanism at Go, world axes
+  double hand_error = 0;  ///< distance that the hand is off the grasp frame [m]
+  JointLoads joints;      ///< of each joint of the mechanism
+  std::span<const LinkMotion> links;  ///< empty if LoadStudyOptions::link_motions is off
+  // As the arrays of these names.
+  double power = 0, power_error = 0, power_error_scale = 0;
+  double smallest_pivot = 1;
+  double closure = 0;
+
+ private:
+  std::shared_ptr<const LoadArrays> arrays_;
+};
+
+/// The poses of a study in their order.
+class PoseSeries {
+ public:
+  using value_type = PoseLoads;
+
+  PoseSeries() : PoseSeries(std::make_shared<LoadArrays>()) {}
+  explicit PoseSeries(std::shared_ptr<const LoadArrays> arrays) : arrays_(std::move(arrays)) {}
+
+  size_t size() const { return arrays_->pose_count(); }
+  bool empty() const { return size() == 0; }
+  PoseLoads operator[](size_t pose) const { return {arrays_, pose}; }
+  PoseLoads front() const { return (*this)[0]; }
+  PoseLoads back() const { return (*this)[size() - 1]; }
+  IndexIterator<PoseSeries> begin() const { return {this, 0}; }
+  IndexIterator<PoseSeries> end() const { return {this, size()}; }
+
+  /// All of them, without a copy.
+  const LoadArrays& arrays() const { return *arrays_; }
+
+ private:
+  std::shared_ptr<const LoadArrays> arrays_;  ///< never null
+};
+
+}  // namespace vmech
