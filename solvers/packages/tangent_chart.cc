@@ -1,4 +1,4 @@
-#include "vmech/solvers/backends/tangent_chart.h"
+#include "vmech/solvers/packages/tangent_chart.h"
 
 #include <algorithm>
 #include <cmath>
