@@ -15,9 +15,8 @@ Summary Solve(ConstrainedLeastSquares& problem, const CeresOptions& options, con
   options.Validate();
   static const PackageSolver<CeresOptions> by_ceres("ceres", "libceres-dev");
   const char* name = options.method == CeresMethod::kExact ? "ceres_exact" : "ceres_weighted";
-  return Run(name, problem, options.stopping, x0, [&](CountedProblem& counted, VectorXd* x) {
-    return by_ceres(counted, options, x);
-  });
+  return Run(name, problem, options.stopping, x0,
+             [&](CountedProblem& counted, VectorXd* x) { return by_ceres(counted, options, x); });
 }
 
 }  // namespace vmech

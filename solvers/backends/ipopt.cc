@@ -14,9 +14,8 @@ void IpoptOptions::Validate() const {
 Summary Solve(ConstrainedLeastSquares& problem, const IpoptOptions& options, const VectorXd& x0) {
   options.Validate();
   static const PackageSolver<IpoptOptions> by_ipopt("ipopt", "coinor-libipopt-dev");
-  return Run("ipopt", problem, options.stopping, x0, [&](CountedProblem& counted, VectorXd* x) {
-    return by_ipopt(counted, options, x);
-  });
+  return Run("ipopt", problem, options.stopping, x0,
+             [&](CountedProblem& counted, VectorXd* x) { return by_ipopt(counted, options, x); });
 }
 
 }  // namespace vmech

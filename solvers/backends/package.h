@@ -7,6 +7,9 @@
 
 namespace vmech {
 
+/// The packages that have a library of their own.
+inline constexpr const char* kPackages[] = {"ceres", "ipopt", "kinsol", "nlopt"};
+
 /// What the library of a package holds for the options of a back end, as its variable vmech_solve.
 template <typename Options>
 using PackageFunction = Outcome (*)(CountedProblem& problem, const Options& options, VectorXd* x);
@@ -19,8 +22,8 @@ class PackageSolver {
  public:
   PackageSolver(const std::string& package, const std::string& debian) : library_(package) {
     if (library_.loaded()) solve_ = library_.Variable<PackageFunction<Options>>("vmech_solve");
-    why_not_ = library_.error() + "; it is there if vmech is built where " + debian +
-               " is installed";
+    why_not_ =
+        library_.error() + "; it is there if vmech is built where " + debian + " is installed";
   }
 
   Outcome operator()(CountedProblem& problem, const Options& options, VectorXd* x) const {

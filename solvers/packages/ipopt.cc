@@ -123,8 +123,8 @@ class ChartNlp final : public Ipopt::TNLP {
 // Registering some three hundred options takes Ipopt longer than a warm solve: the application is
 // kept, and never deleted, as Ipopt's own libraries may be gone by then.
 Ipopt::IpoptApplication& KeptApplication() {
-  static auto* const kept = new Ipopt::SmartPtr<Ipopt::IpoptApplication>(
-      new Ipopt::IpoptApplication(false));
+  static auto* const kept =
+      new Ipopt::SmartPtr<Ipopt::IpoptApplication>(new Ipopt::IpoptApplication(false));
   return **kept;
 }
 

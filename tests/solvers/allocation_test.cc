@@ -5,6 +5,7 @@
 
 #include "support/count_allocations.h"
 #include "vmech/solvers/augmented_lagrangian.h"
+#include "vmech/solvers/nullspace.h"
 #include "vmech/solvers/penalty.h"
 
 namespace vmech {
@@ -90,6 +91,26 @@ TEST_P(FastSolvers, AllocateNothingInThePenalty) {
 
 TEST_P(FastSolvers, AllocateNothingInTheAugmentedLagrangian) {
   ExpectNoAllocation<AugmentedLagrangianOptions, AugmentedLagrangianWorkspace>(GetParam());
+}
+
+// What it takes for the working set of bounds depends on the way, so it has to have gone it.
+TEST_P(FastSolvers, AllocateNothingInTheWarmNullspace) {
+  Chain problem(GetParam());
+  const NullspaceOptions options;
+  NullspaceWorkspace workspace(problem);
+  const auto solve_twice = [&] {
+    VectorXd x = problem.Start();
+    const long before = allocations;
+    for (const double target : {1.0, 0.3}) {
+      problem.target = target;
+      const FastOutcome outcome = Solve(problem, options, &x, &workspace);
+      EXPECT_EQ(outcome.claim, SolveStatus::kConverged);
+      EXPECT_GT(outcome.iterations, 0);
+    }
+    return allocations - before;
+  };
+  EXPECT_GT(solve_twice(), 0);
+  EXPECT_EQ(solve_twice(), 0);
 }
 
 }  // namespace
