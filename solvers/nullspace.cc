@@ -232,6 +232,7 @@ class NullspaceWorkspace::Solver {
     const int n = Size(d_), m = Size(at_x_.c);
     slope_ = gradient_;
     AddProduct(B_.data(), n, n, d_.data(), slope_.data());
+    free_slope_.resize(free_.size());
     for (size_t k = 0; k < free_.size(); ++k) free_slope_[k] = -slope_[free_[k]];
     factors_->SolveTransposed(free_slope_.data(), step_mu_.data());
     for (int j = 0; j < n; ++j) slope_[j] += Dot(at_x_.C.data() + j * m, step_mu_.data(), m);

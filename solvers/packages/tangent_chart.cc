@@ -30,7 +30,8 @@ VectorXd ClosedNear(CountedProblem& problem, VectorXd x, Linearization* at_x) {
   return x;
 }
 
-// The range of C, of the largest rank among closed poses about the base.
+// The range of C, of the largest rank among closed poses about the base; the rows as they are where
+// none is redundant.
 MatrixXd RangeOfConstraints(CountedProblem& problem, const VectorXd& base) {
   Linearization at_x(problem.sizes());
   const VectorXd closed = ClosedNear(problem, base, &at_x);
@@ -46,7 +47,8 @@ MatrixXd RangeOfConstraints(CountedProblem& problem, const VectorXd& base) {
     CompleteOrthogonal other(at_x.C, kRankTolerance);
     if (other.rank() > best.rank()) best = std::move(other);
   }
-  return best.V();
+  const Eigen::Index m = at_x.c.size();
+  return best.rank() == m ? MatrixXd::Identity(m, m) : MatrixXd(best.V());
 }
 
 bool Met(CountedProblem& problem, const StoppingRule& rule, const VectorXd& x) {
