@@ -18,7 +18,7 @@
 #include "vmech/apps/console/progress_bar.h"
 #include "vmech/apps/files/file_kind.h"
 #include "vmech/apps/files/result_folder.h"
-#include "vmech/apps/mpi_session.h"
+#include "vmech/apps/mpi/mpi_session.h"
 #include "vmech/comparison/statistics.h"
 #include "vmech/comparison/target_maker.h"
 #include "vmech/mechanisms/files/document.h"

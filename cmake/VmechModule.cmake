@@ -36,7 +36,8 @@ function(vmech_add_module path)
   if(sources)
     add_library(${target} ${sources})
     set_target_properties(${target} PROPERTIES VERSION ${PROJECT_VERSION}
-                          SOVERSION ${PROJECT_VERSION_MAJOR})
+                          SOVERSION ${PROJECT_VERSION_MAJOR}
+                          INSTALL_RPATH "$ORIGIN;$ORIGIN/vmech")
     target_link_libraries(${target} PRIVATE ${ARG_PRIVATE} $<BUILD_INTERFACE:vmech_settings>
                                             $<BUILD_INTERFACE:vmech_kernel_settings>)
     vmech_precompile(${target} library)
@@ -56,4 +57,35 @@ function(vmech_add_module path)
   if(NOT ARG_LOCAL)
     install(TARGETS ${target} EXPORT vmech-targets)
   endif()
+endfunction()
+
+# vmech_add_late_library(<name> SOURCES ... LIBS ...)
+#
+# libvmech_<name>.so, which a program loads when it asks for it (base/late_library.h): what few runs
+# need and what takes long to load. It is found in `vmech_late_libraries` of this build and in the
+# folder vmech beside the installed libraries. Headers among the SOURCES are included by their path
+# from the top, "vmech/solvers/packages/ceres_rows.h".
+set(vmech_late_libraries ${PROJECT_BINARY_DIR}/late)
+set(vmech_installed_late_libraries ${CMAKE_INSTALL_LIBDIR}/vmech)
+set(CMAKE_BUILD_RPATH ${vmech_late_libraries})
+
+function(vmech_add_late_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBS" ${ARGN})
+  set(target vmech_${name})
+  set(include_root ${PROJECT_BINARY_DIR}/include/late_${name})
+  add_library(${target} MODULE ${ARG_SOURCES})
+  foreach(header ${ARG_SOURCES})
+    if(header MATCHES "[.]h$")
+      file(RELATIVE_PATH path ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/${header})
+      file(CONFIGURE OUTPUT ${include_root}/vmech/${path} @ONLY
+           CONTENT "#include \"${CMAKE_CURRENT_SOURCE_DIR}/${header}\"\n")
+    endif()
+  endforeach()
+  target_include_directories(${target} PRIVATE ${include_root})
+  target_link_libraries(${target} PRIVATE ${ARG_LIBS} vmech_settings vmech_kernel_settings)
+  # What it shares with the program, if that is linked statically, each has for itself.
+  target_link_options(${target} PRIVATE LINKER:--exclude-libs,ALL)
+  set_target_properties(${target} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${vmech_late_libraries}
+                        INSTALL_RPATH "$ORIGIN/..")
+  install(TARGETS ${target} LIBRARY DESTINATION ${vmech_installed_late_libraries})
 endfunction()

@@ -57,7 +57,10 @@ endif()
 if(VMECH_SANITIZE)
   target_compile_options(vmech_settings INTERFACE -fsanitize=${VMECH_SANITIZE}
                          -fno-omit-frame-pointer -fno-sanitize-recover=all)
-  target_link_options(vmech_settings INTERFACE -fsanitize=${VMECH_SANITIZE})
+  # The sanitizer's dlopen looks where the sanitizer's own library says (RUNPATH), but for the older
+  # RPATH of the program.
+  target_link_options(vmech_settings INTERFACE -fsanitize=${VMECH_SANITIZE}
+                      LINKER:--disable-new-dtags)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # Instrumented code hides from g++ what is initialised: it warns inside <regex>.
     target_compile_options(vmech_settings INTERFACE -Wno-maybe-uninitialized)

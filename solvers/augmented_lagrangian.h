@@ -1,6 +1,8 @@
 #pragma once
 
-#include "vmech/solvers/penalty.h"
+#include "vmech/solvers/fast_outcome.h"
+#include "vmech/solvers/stopping_rule.h"
+#include "vmech/solvers/weighted_step.h"
 
 namespace vmech {
 

@@ -22,6 +22,9 @@ class NullMotions {
   /// At a point; unknowns that are held do not move.
   void Find(const Linearization& at_x, const Held& held) noexcept;
 
+  /// Forgets how few there were elsewhere: another solve begins.
+  void ForgetFewest() noexcept { least_ = static_cast<int>(A_.rows()); }
+
   int count() const noexcept { return count_; }
   /// One of them, of length 1 and square to the others.
   auto motion(int k) const noexcept { return N_.col(k); }

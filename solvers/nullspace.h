@@ -1,6 +1,9 @@
 #pragma once
 
+#include <memory>
+
 #include "vmech/solvers/constrained_least_squares.h"
+#include "vmech/solvers/fast_outcome.h"
 #include "vmech/solvers/stopping_rule.h"
 #include "vmech/solvers/summary.h"
 
@@ -28,6 +31,27 @@ struct NullspaceOptions {
   void Validate() const;
 };
 
+/// What a solve works with; for problems of the sizes of one. A first solve, and the first that
+/// meets bounds, may take more memory.
+class NullspaceWorkspace {
+ public:
+  explicit NullspaceWorkspace(const ConstrainedLeastSquares& problem);
+  NullspaceWorkspace(NullspaceWorkspace&&) noexcept;
+  NullspaceWorkspace& operator=(NullspaceWorkspace&&) noexcept;
+  ~NullspaceWorkspace();
+
+ private:
+  friend FastOutcome Solve(ConstrainedLeastSquares&, const NullspaceOptions&, VectorXd*,
+                           NullspaceWorkspace*) noexcept;
+  class Solver;
+  std::unique_ptr<Solver> solver_;
+};
+
+/// From *x to a constrained minimum; no allocation with a workspace that has solved before.
+[[nodiscard]] FastOutcome Solve(ConstrainedLeastSquares& problem, const NullspaceOptions& options,
+                                VectorXd* x, NullspaceWorkspace* workspace) noexcept;
+
+/// The same, judged.
 Summary Solve(ConstrainedLeastSquares& problem, const NullspaceOptions& options,
               const VectorXd& x0);
 

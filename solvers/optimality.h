@@ -1,5 +1,8 @@
 #pragma once
 
+#include <vector>
+
+#include "vmech/base/linear_algebra/complete_orthogonal.h"
 #include "vmech/solvers/constrained_least_squares.h"
 
 namespace vmech {
@@ -30,7 +33,44 @@ struct Optimality {
   VectorXd bound_multipliers;
 };
 
-/// rank_tolerance: relative pivot below which rows of C count as redundant.
+/// Measures optimality. Takes memory only where a problem is larger than all before.
+class OptimalityMeter {
+ public:
+  /// rank_tolerance: relative pivot below which rows of C count as redundant. What is returned
+  /// lives until the next call.
+  const Optimality& Measure(const std::vector<Bound>& bounds, const VectorXd& x,
+                            const Linearization& at_x, double rank_tolerance = 1e-9);
+
+  /// Of the C measured last, factored to rank_tolerance; the rank is that of the measurement, which
+  /// takes no pivot below |c| / |C| for one.
+  CompleteOrthogonal& factors() { return factors_; }
+
+ private:
+  /// A bound that x is near to, and the force that it carries.
+  struct NearBound {
+    int index;  // in the problem's list
+    int tangent;
+    double sign;      // +1 at the upper bound, -1 at the lower
+    double distance;  // to the bound
+    bool used;        // may carry a force
+    double force;     // y >= 0
+  };
+
+  void FindNearBounds(const std::vector<Bound>& bounds, const VectorXd& x);
+  void FindMultipliers(const Linearization& at_x, double rank_tolerance);
+  bool UseSteepest();
+  void SolveWithUsed(const MatrixXd& C, double rank_tolerance);
+  NearBound* WorstPulling();
+  double InfeasibilitySlope(const Linearization& at_x);
+
+  Optimality result_;
+  std::vector<NearBound> near_;
+  VectorXd gradient_, residual_;
+  std::vector<double> negative_, solution_;  // -J'r; mu and the forces of the bounds in use
+  CompleteOrthogonal factors_, factors_with_bounds_;
+};
+
+/// The same, once.
 Optimality MeasureOptimality(const std::vector<Bound>& bounds, const VectorXd& x,
                              const Linearization& at_x, double rank_tolerance = 1e-9);
 

@@ -1,9 +1,26 @@
 #include "vmech/apps/compare/digest.h"
 
+#include <filesystem>
 #include <fstream>
 #include <vector>
 
+#include "vmech/solvers/backends/package.h"
+
 namespace vmech {
+namespace {
+
+/// Goes on from `before`; what cannot be read has no part in it.
+uint64_t DigestOfFile(const std::filesystem::path& path, uint64_t before) {
+  std::ifstream file(path, std::ios::binary);
+  uint64_t digest = before;
+  std::vector<char> block(1 << 16);
+  while (file.read(block.data(), static_cast<std::streamsize>(block.size())), file.gcount() > 0) {
+    digest = DigestOf({block.data(), static_cast<size_t>(file.gcount())}, digest);
+  }
+  return digest;
+}
+
+}  // namespace
 
 uint64_t DigestOf(std::string_view text, uint64_t before) {
   uint64_t digest = before;
@@ -14,13 +31,9 @@ uint64_t DigestOf(std::string_view text, uint64_t before) {
 }
 
 uint64_t DigestOfThisProgram() {
-  std::ifstream program("/proc/self/exe", std::ios::binary);
-  if (!program) return 0;
-  uint64_t digest = DigestOf("");
-  std::vector<char> block(1 << 16);
-  while (program.read(block.data(), static_cast<std::streamsize>(block.size())),
-         program.gcount() > 0) {
-    digest = DigestOf({block.data(), static_cast<size_t>(program.gcount())}, digest);
+  uint64_t digest = DigestOfFile("/proc/self/exe", DigestOf(""));
+  for (const char* package : kPackages) {
+    digest = DigestOfFile(LateLibrary(package).path(), digest);
   }
   return digest;
 }

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <future>
 #include <stdexcept>
 #include <thread>
 
@@ -162,12 +163,16 @@ int RunLoads(const LoadsArguments& arguments) {
     outcome = RunNamed(file, options);
   }
   if (arguments.strict) RequireNoWarning(arguments.study, outcome);
+  // Rendered while the tables are written, each of which waits for the disk.
+  const std::launch how = options.threads > 1 ? std::launch::async : std::launch::deferred;
+  std::future<std::string> report =
+      std::async(how, [&] { return RenderLoadReport(file, outcome, VMECH_VERSION); });
   folder.Write("loads.csv", LoadsTable(file, outcome.loads, options.threads));
   folder.Write("motion.csv", MotionTable(file, outcome.loads, options.threads));
   folder.Write("certainty.csv", CertaintyTable(file, outcome.loads));
   folder.Write("bearings.csv", BearingsTable(file, outcome));
   folder.Write("summary.json", SummaryJson(file, outcome));
-  folder.Write("report.html", RenderLoadReport(file, outcome, VMECH_VERSION));
+  folder.Write("report.html", report.get());
   folder.Commit();
   if (!arguments.quiet) PrintSummary(file, outcome, folder);
   const bool met = std::all_of(outcome.bearings.begin(), outcome.bearings.end(),

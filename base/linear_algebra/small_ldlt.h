@@ -45,6 +45,16 @@ inline void AddScaled(double s, const double* x, int from, int to, double* y) no
   for (; k < to; ++k) y[k] += s * x[k];
 }
 
+/// y = A'x, A [m, n].
+inline void MultiplyTransposed(const double* A, int m, int n, const double* x, double* y) noexcept {
+  for (int j = 0; j < n; ++j) y[j] = Dot(A + j * m, x, m);
+}
+
+/// y += A x, A [m, n].
+inline void AddProduct(const double* A, int m, int n, const double* x, double* y) noexcept {
+  for (int j = 0; j < n; ++j) AddScaled(x[j], A + j * m, 0, m, y);
+}
+
 /// body(0), body(1), .. body(kCount - 1), each with a constant for its argument: what they work on
 /// stays in registers. A loop that the compiler vectorises waits for the stores of its last turn.
 template <int kCount, typename Body>

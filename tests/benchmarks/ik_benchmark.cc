@@ -7,6 +7,8 @@
 #include "hand_path.h"
 #include "vmech/solvers/augmented_lagrangian.h"
 #include "vmech/solvers/backend.h"
+#include "vmech/solvers/nullspace.h"
+#include "vmech/solvers/penalty.h"
 
 namespace vmech {
 namespace {
@@ -71,6 +73,8 @@ void RegisterInPlace(const std::string& prefix, const HandPath& path) {
       ->Apply(ReportPercentiles);
   Register(prefix + "/augmented_lagrangian_in_place",
            SolveInPlace<AugmentedLagrangianOptions, AugmentedLagrangianWorkspace>, path)
+      ->Apply(ReportPercentiles);
+  Register(prefix + "/nullspace_in_place", SolveInPlace<NullspaceOptions, NullspaceWorkspace>, path)
       ->Apply(ReportPercentiles);
 }
 

@@ -1,11 +1,14 @@
 // What a program does with the installed vmech: the loads of a pendulum, its weight in a hand, and
-// a session with a simulated device; each compared with what statics says. Every class that needs
-// arguments is made on the stack, on the heap and in a vector.
+// a session with a simulated device; each compared with what statics says. Then a problem of two
+// unknowns by every back end. Every class that needs arguments is made on the stack, on the heap and
+// in a vector.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "vmech/dynamics/in_hand/coupled_dynamics.h"
@@ -20,6 +23,7 @@
 #include "vmech/hw_interface/rendering/coupled_tick.h"
 #include "vmech/hw_interface/rendering/mechanism_tick.h"
 #include "vmech/kinematics/inverse/hand_tracker.h"
+#include "vmech/solvers/backend.h"
 
 namespace {
 
@@ -130,12 +134,46 @@ void RunSession() {
   Expect("kept ticks", static_cast<double>(kept.size()), 0.5 / info.period, 0);
 }
 
+/// The point of the unit circle nearest to (2, 1).
+class Circle final : public vmech::ConstrainedLeastSquares {
+ public:
+  Circle() : ConstrainedLeastSquares({2, 2, 2, 1}) {}
+  void Evaluate(const vmech::VectorXd& x, vmech::VectorXd* r, vmech::MatrixXd* J,
+                vmech::VectorXd* c, vmech::MatrixXd* C) override {
+    if (r) *r << x[0] - 2, x[1] - 1;
+    if (J) J->setIdentity();
+    if (c) *c << x.squaredNorm() - 1;
+    if (C) *C = 2 * x.transpose();
+  }
+};
+
+/// By every back end. `packages` are those that vmech was built with, as in "vmech_ceres".
+void SolveByEveryBackend(const std::vector<std::string_view>& packages) {
+  Circle circle;
+  const vmech::VectorXd x0 = (vmech::VectorXd(2) << 0.5, 0.5).finished();
+  for (const vmech::Backend backend : vmech::kAllBackends) {
+    const std::string_view name = vmech::NameOf(backend);
+    bool there = true;
+    for (const std::string_view package : {"ceres", "ipopt", "kinsol", "nlopt"}) {
+      if (!name.starts_with(package)) continue;
+      const auto named = [&](std::string_view built) { return built.ends_with(package); };
+      there = std::any_of(packages.begin(), packages.end(), named);
+    }
+    const vmech::Summary summary = vmech::Solve(backend, circle, {}, x0);
+    std::cout << summary.BriefReport() << " " << summary.message << "\n";
+    const bool available = summary.status != vmech::SolveStatus::kUnavailable;
+    Expect("is available", available, there, 0);
+    if (available) Expect("x on the circle", summary.x[0], 2 / std::sqrt(5.0), 1e-3);
+  }
+}
+
 }  // namespace
 
-int main() {
+int main(int count, char** arguments) {
   RunLoads();
   Hold();
   RunSession();
+  SolveByEveryBackend({arguments + 1, arguments + count});
   std::cout << (failures == 0 ? "all as expected\n" : "NOT as expected\n");
   return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

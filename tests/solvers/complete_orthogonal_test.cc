@@ -16,18 +16,18 @@ Eigen::MatrixXd RankTwo() {
 }
 
 TEST(CompleteOrthogonal, RebuildsTheMatrix) {
-  const CompleteOrthogonal factors(RankTwo(), kRankTolerance);
+  CompleteOrthogonal factors(RankTwo(), kRankTolerance);
   EXPECT_EQ(factors.rank(), 2);
-  EXPECT_LT((factors.V * factors.L * factors.Y.transpose() - RankTwo()).norm(), kRounding);
-  EXPECT_LT((RankTwo() * factors.Z).norm(), kRounding);
+  EXPECT_LT((factors.V() * factors.L() * factors.Y().transpose() - RankTwo()).norm(), kRounding);
+  EXPECT_LT((RankTwo() * factors.Z()).norm(), kRounding);
 }
 
 TEST(CompleteOrthogonal, GivesTheShortestLeastSquaresSolutions) {
-  const CompleteOrthogonal factors(RankTwo(), kRankTolerance);
+  CompleteOrthogonal factors(RankTwo(), kRankTolerance);
   const Eigen::Vector3d b(1, -2, 5);
   const Eigen::VectorXd x = factors.Solve(b);
   EXPECT_LT((RankTwo().transpose() * (RankTwo() * x - b)).norm(), 1e-12);
-  EXPECT_LT((factors.Z.transpose() * x).norm(), kRounding);
+  EXPECT_LT((factors.Z().transpose() * x).norm(), kRounding);
 
   const Eigen::VectorXd g = RankTwo().transpose() * b;
   const Eigen::VectorXd mu = factors.SolveTransposed(g);
@@ -36,9 +36,9 @@ TEST(CompleteOrthogonal, GivesTheShortestLeastSquaresSolutions) {
 }
 
 TEST(CompleteOrthogonal, TakesAMatrixWithoutRows) {
-  const CompleteOrthogonal factors(Eigen::MatrixXd(0, 3), kRankTolerance);
+  CompleteOrthogonal factors(Eigen::MatrixXd(0, 3), kRankTolerance);
   EXPECT_EQ(factors.rank(), 0);
-  EXPECT_EQ(factors.Z.cols(), 3);
+  EXPECT_EQ(factors.Z().cols(), 3);
   EXPECT_EQ(factors.Solve(Eigen::VectorXd(0)), Eigen::VectorXd::Zero(3));
 }
 
@@ -47,8 +47,8 @@ TEST(CompleteOrthogonal, TakesMatricesLargerThanTheStackHolds) {
   const int n = 300;
   const Eigen::MatrixXd C =
       Eigen::MatrixXd::NullaryExpr(n, n, [](int i, int j) { return std::sin(i * i + 3.0 * j); });
-  const CompleteOrthogonal factors(C, kRankTolerance);
-  EXPECT_LT((factors.V * factors.L * factors.Y.transpose() - C).norm(), 1e-11 * n);
+  CompleteOrthogonal factors(C, kRankTolerance);
+  EXPECT_LT((factors.V() * factors.L() * factors.Y().transpose() - C).norm(), 1e-11 * n);
 }
 
 }  // namespace

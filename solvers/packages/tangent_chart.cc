@@ -1,4 +1,4 @@
-#include "vmech/solvers/backends/tangent_chart.h"
+#include "vmech/solvers/packages/tangent_chart.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,14 +21,17 @@ VectorXd ClosedNear(CountedProblem& problem, VectorXd x, Linearization* at_x) {
   at_x->Evaluate(problem, x);
   for (int i = 0; i < kMaxSteps && at_x->AllFinite() && at_x->c.norm() > kClosed; ++i) {
     const double damping = 0.01 * std::min(at_x->c.squaredNorm(), at_x->C.squaredNorm());
-    const VectorXd step = CompleteOrthogonal(at_x->C, kRankTolerance).Solve(-at_x->c, damping);
+    CompleteOrthogonal factors(at_x->C, kRankTolerance);
+    factors.SetDamping(damping);
+    const VectorXd step = factors.Solve(-at_x->c);
     problem.Plus(x, step, &x);
     at_x->Evaluate(problem, x);
   }
   return x;
 }
 
-// The range of C, of the largest rank among closed poses about the base.
+// The range of C, of the largest rank among closed poses about the base; the rows as they are where
+// none is redundant.
 MatrixXd RangeOfConstraints(CountedProblem& problem, const VectorXd& base) {
   Linearization at_x(problem.sizes());
   const VectorXd closed = ClosedNear(problem, base, &at_x);
@@ -44,7 +47,8 @@ MatrixXd RangeOfConstraints(CountedProblem& problem, const VectorXd& base) {
     CompleteOrthogonal other(at_x.C, kRankTolerance);
     if (other.rank() > best.rank()) best = std::move(other);
   }
-  return best.V;
+  const Eigen::Index m = at_x.c.size();
+  return best.rank() == m ? MatrixXd::Identity(m, m) : MatrixXd(best.V());
 }
 
 bool Met(CountedProblem& problem, const StoppingRule& rule, const VectorXd& x) {
@@ -121,7 +125,7 @@ MatrixXd TangentChart::PlusDerivative(const VectorXd& y) const {
     problem_.Plus(here, -h, &minus);
     from_here.col(i) = (plus - minus) / (2 * kStep);
   }
-  const CompleteOrthogonal factors(from_here, kRankTolerance);
+  CompleteOrthogonal factors(from_here, kRankTolerance);
   MatrixXd T(n, n);
   for (Eigen::Index i = 0; i < n; ++i) T.col(i) = factors.Solve(from_base.col(i));
   return T;

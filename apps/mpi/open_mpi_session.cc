@@ -1,4 +1,4 @@
-#include "vmech/apps/mpi_session.h"
+#include "vmech/apps/mpi/mpi_session.h"
 
 // The C interface alone: the one for C++ is no longer part of MPI.
 #define OMPI_SKIP_MPICXX
@@ -77,11 +77,13 @@ class OpenMpiSession final : public MpiSession {
   int rank_ = 0, size_ = 1;
 };
 
-}  // namespace
-
-std::unique_ptr<MpiSession> MpiSession::Join() {
-  if (ProcessesOfMpirun() <= 1) return nullptr;
+std::unique_ptr<MpiSession> Join() {
   return std::make_unique<OpenMpiSession>();
 }
 
+}  // namespace
 }  // namespace vmech
+
+extern "C" {
+vmech::JoinFunction vmech_join = vmech::Join;
+}

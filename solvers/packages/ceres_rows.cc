@@ -1,4 +1,4 @@
-#include "vmech/solvers/backends/ceres_rows.h"
+#include "vmech/solvers/packages/ceres_rows.h"
 
 #include <algorithm>
 

@@ -14,7 +14,7 @@ namespace vmech {
 class MpiSession {
  public:
   /// Joins the others; null in a process that mpirun did not start, or if it is the only one.
-  /// @throws std::invalid_argument if vmech was built without MPI.
+  /// @throws std::invalid_argument if what vmech needs of MPI cannot be loaded.
   static std::unique_ptr<MpiSession> Join();
   virtual ~MpiSession() = default;
 
@@ -24,6 +24,9 @@ class MpiSession {
   /// In the first process: as RunInProcesses.
   virtual void Run(const std::vector<std::string>& tasks, const Coordinator& coordinator) = 0;
 };
+
+/// What the library that sees MPI holds, as its variable vmech_join: joins the others.
+using JoinFunction = std::unique_ptr<MpiSession> (*)();
 
 /// How many processes Open MPI's mpirun started; 1 if it did not start this one.
 inline int ProcessesOfMpirun() {
