@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "vmech/dynamics/loads/pose/pose_loads.h"
 #include "vmech/kinematics/inverse/inverse_kinematics.h"
 #include "vmech/mechanisms/freedoms.h"
 #include "vmech/solvers/nullspace.h"

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "vmech/dynamics/loads/pose/study_motion.h"
 #include "vmech/dynamics/loads/prepare_study.h"
 #include "vmech/dynamics/reactions/certainty.h"
 

@@ -5,6 +5,7 @@
 
 #include "vmech/base/linear_algebra/linear_algebra.h"
 #include "vmech/base/packet.h"
+#include "vmech/dynamics/loads/pose/contact_friction.h"
 #include "vmech/dynamics/rigid_body/passive.h"
 
 namespace vmech {
