@@ -1,15 +1,50 @@
+# Modules: libraries with an include root each, installed as components of the package `vmech`.
+
+# vmech_found_by(<how> <target>...): a program that uses the installed vmech finds these targets of a
+# package by the command <how>.
+function(vmech_found_by how)
+  foreach(library ${ARGN})
+    set_property(GLOBAL PROPERTY VMECH_FOUND_BY_${library} "${how}")
+  endforeach()
+endfunction()
+
+# Installs a module as a component of the package `vmech`: vmech-<name>.cmake finds what the
+# libraries of the module ask for, modules and packages, then adds its target.
+function(vmech_install_module name target libraries)
+  set(finds)
+  foreach(library ${libraries})
+    get_property(how GLOBAL PROPERTY VMECH_FOUND_BY_${library})
+    if(how)
+      list(APPEND finds "${how}")
+    elseif(library MATCHES "::")
+      message(FATAL_ERROR "vmech_add_module: ${target} links to ${library}: say with "
+                          "vmech_found_by how an installed vmech finds it")
+    endif()
+  endforeach()
+  list(REMOVE_DUPLICATES finds)
+  list(JOIN finds "\n" finds)
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/vmech-module.cmake.in
+                 ${PROJECT_BINARY_DIR}/package/vmech-${name}.cmake @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/package/vmech-${name}.cmake DESTINATION ${VMECH_PACKAGE_DIR})
+  install(TARGETS ${target} EXPORT vmech-${name})
+  install(EXPORT vmech-${name} NAMESPACE vmech:: FILE vmech-${name}-targets.cmake
+          DESTINATION ${VMECH_PACKAGE_DIR})
+  vmech_found_by("include(\${CMAKE_CURRENT_LIST_DIR}/vmech-${name}.cmake)" vmech::${name})
+  set_property(GLOBAL APPEND PROPERTY VMECH_MODULES ${name})
+endfunction()
+
 # vmech_add_module(<path> [LOCAL] COMPONENTS ... [INTERNAL ...] [SOURCES ...] [PUBLIC ...]
 #                  [PRIVATE ...])
 #
 # One folder, one library: the module `dynamics/bearings` becomes vmech_dynamics_bearings (alias
 # vmech::dynamics_bearings). A component `loads/load_study` is a header, a source or both, in the
 # module's folder or a folder below. Its header is included as
-# "vmech/<path>/loads/load_study.h", in this tree and from an installation. Each module has an
-# include root of its own, made of forwarding headers: a module can include only what it links to.
+# "vmech/<path>/loads/load_study.h", in this tree and from an installation; "vmech/<path>.h" includes
+# all that are installed. Each module has an include root of its own, made of forwarding headers: a
+# module can include only what it links to.
 # INTERNAL components have headers that are not installed: what is passed in them depends on the
 # instruction set that the library is compiled for. SOURCES are those that belong to no component.
 # Nothing of a LOCAL module is installed: it is part of a program.
-
 function(vmech_add_module path)
   cmake_parse_arguments(ARG "LOCAL" "" "COMPONENTS;INTERNAL;SOURCES;PUBLIC;PRIVATE" ${ARGN})
   string(REPLACE "/" "_" name ${path})
@@ -17,6 +52,7 @@ function(vmech_add_module path)
   set(include_root ${PROJECT_BINARY_DIR}/include/${name})
 
   set(sources ${ARG_SOURCES})
+  set(installed)
   foreach(component ${ARG_COMPONENTS} ${ARG_INTERNAL})
     if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${component}.cc)
       list(APPEND sources ${component}.cc)
@@ -29,9 +65,15 @@ function(vmech_add_module path)
       if(NOT ARG_LOCAL AND NOT component IN_LIST ARG_INTERNAL)
         get_filename_component(folder vmech/${path}/${component} DIRECTORY)
         install(FILES ${component}.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder})
+        list(APPEND installed "#include \"vmech/${path}/${component}.h\"\n")
       endif()
     endif()
   endforeach()
+
+  list(SORT installed)
+  list(JOIN installed "" includes)
+  set(umbrella ${include_root}/vmech/${path}.h)
+  file(CONFIGURE OUTPUT ${umbrella} CONTENT "#pragma once\n\n${includes}" @ONLY)
 
   if(sources)
     add_library(${target} ${sources})
@@ -55,7 +97,9 @@ function(vmech_add_module path)
                              EIGEN_MAX_STATIC_ALIGN_BYTES=16)
   target_link_libraries(${target} ${scope} ${ARG_PUBLIC})
   if(NOT ARG_LOCAL)
-    install(TARGETS ${target} EXPORT vmech-targets)
+    get_filename_component(folder vmech/${path} DIRECTORY)
+    install(FILES ${umbrella} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder})
+    vmech_install_module(${name} ${target} "${ARG_PUBLIC};${ARG_PRIVATE}")
   endif()
 endfunction()
 

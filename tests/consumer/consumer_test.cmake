@@ -16,26 +16,28 @@ set_tests_properties(consumer.install PROPERTIES FIXTURES_SETUP vmech_installati
 get_target_property(packages vmech_solver_packages MANUALLY_ADDED_DEPENDENCIES)
 list(JOIN packages " " packages)
 
-function(vmech_add_consumer name)
-  list(JOIN ARGN " " flags)
+# vmech_add_consumer(<name> <project> <flags> <command>): builds a project and runs a command.
+function(vmech_add_consumer name project flags command)
   add_test(NAME consumer.${name}
     COMMAND ${CMAKE_CTEST_COMMAND}
-      --build-and-test ${CMAKE_CURRENT_LIST_DIR} ${consumer}/${name}
+      --build-and-test ${project} ${consumer}/${name}
       --build-generator ${CMAKE_GENERATOR}
       --build-options -DCMAKE_PREFIX_PATH=${consumer}/prefix
                       -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER}
                       "-DCMAKE_CXX_FLAGS=${flags} ${consumer_flags}"
                       -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF
-      --test-command sh -c
-        "./consumer ${packages} && ./every_class > layout.txt && cmp layout.txt ../plain/layout.txt")
+      --test-command sh -c "${command}")
   set_tests_properties(consumer.${name} PROPERTIES FIXTURES_REQUIRED vmech_installation)
 endfunction()
 
-vmech_add_consumer(plain -O2)
-vmech_add_consumer(avx2 -O2 -march=x86-64-v3)
-vmech_add_consumer(native -O2 -march=native)
+vmech_add_consumer(component ${CMAKE_CURRENT_LIST_DIR}/component -O2 ./pendulum)
+set(run "./consumer ${packages} && ./every_class > layout.txt && cmp layout.txt ../plain/layout.txt")
+vmech_add_consumer(plain ${CMAKE_CURRENT_LIST_DIR} -O2 "${run}")
+vmech_add_consumer(avx2 ${CMAKE_CURRENT_LIST_DIR} "-O2 -march=x86-64-v3" "${run}")
+vmech_add_consumer(native ${CMAKE_CURRENT_LIST_DIR} "-O2 -march=native" "${run}")
 # The sanitizer's dlopen looks where the sanitizer's own library says, but for the older RPATH.
-vmech_add_consumer(address_sanitizer -O1 -g1 -fsanitize=address -Wl,--disable-new-dtags)
+vmech_add_consumer(address_sanitizer ${CMAKE_CURRENT_LIST_DIR}
+                   "-O1 -g1 -fsanitize=address -Wl,--disable-new-dtags" "${run}")
 set_tests_properties(consumer.plain PROPERTIES FIXTURES_SETUP layout_of_plain)
 foreach(name avx2 native address_sanitizer)
   set_tests_properties(consumer.${name} PROPERTIES
