@@ -48,8 +48,8 @@ Vector3d Logarithm(const Matrix3d& R) {
 }
 
 /// By a call of its own, which leaves the registers to the short ones.
-[[gnu::noinline]] Four LongTurn(const Frame& G, const Frame& H) {
-  return FourOf(Logarithm(RotationOf(H) * RotationOf(G).transpose()));
+[[gnu::noinline]] Double4 LongTurn(const Frame& G, const Frame& H) {
+  return Double4Of(Logarithm(RotationOf(H) * RotationOf(G).transpose()));
 }
 
 /// k(theta) = 1/theta^2 - cot(theta/2)/(2 theta) of Jr^-1 = 1 + [e]/2 + k [e]^2, and its slope
@@ -107,10 +107,10 @@ Vector6d HandError(const Posed& X_WG, const Posed& X_WH) {
 
 Screw HandError(const Frame& G, const Frame& H) noexcept {
   // Trace and skew part of R_WH R_WG' = sum h g', which is not written down for a short turn.
-  const Four traces = G.x * H.x + G.y * H.y + G.z * H.z;
+  const Double4 traces = G.x * H.x + G.y * H.y + G.z * H.z;
   const double y = 0.25 * (3 - (traces[0] + traces[1] + traces[2]));
   if (y <= kShortTurn) {
-    const Four skew = Cross(G.x, H.x) + Cross(G.y, H.y) + Cross(G.z, H.z);
+    const Double4 skew = Cross(G.x, H.x) + Cross(G.y, H.y) + Cross(G.z, H.z);
     return {H.p - G.p, 0.5 * AngleOverSine(y) * skew};
   }
   return {H.p - G.p, LongTurn(G, H)};
@@ -121,10 +121,10 @@ Posed Displaced(const Posed& X, const Vector6d& way) noexcept {
 }
 
 Frame Displaced(const Frame& X, const Screw& way) noexcept {
-  const Four& r = way.angular;
+  const Double4& r = way.angular;
   const auto [s, c] = RodriguesAt(Dot(r, r));
-  const auto turned = [&, s = s, c = c](const Four& a) {
-    const Four ra = Cross(r, a);
+  const auto turned = [&, s = s, c = c](const Double4& a) {
+    const Double4 ra = Cross(r, a);
     return a + s * ra + c * Cross(r, ra);
   };
   return {turned(X.x), turned(X.y), turned(X.z), X.p + way.linear};

@@ -1,15 +1,16 @@
 #pragma once
 
-#include "vmech/base/four.h"
+#include "vmech/base/double4.h"
 #include "vmech/base/pose.h"
 
 namespace vmech {
 
-// Poses, twists, wrenches and inertias as the kernels compute with them, world axes. T is the number
-// of the computation: a double, or whatever takes several poses or a derivative along. In screws
-// about a point of the world twists of a chain add up, and wrenches are handed on without being
-// shifted; screw_algebra.h computes with them. Functions that return them by value are for the
-// sources of the library alone: without AVX g++ puts such temporaries where they are not aligned.
+// Poses, twists, wrenches and inertias as the kernels compute with them, world axes. T is the
+// number of the computation: a double, or whatever takes several poses or a derivative along. In
+// screws about a point of the world twists of a chain add up, and wrenches are handed on without
+// being shifted; screw_algebra.h computes with them. Functions that return them by value are for
+// the sources of the library alone: without AVX g++ puts such temporaries where they are not
+// aligned.
 
 template <typename T>
 struct TripleType {
@@ -17,9 +18,9 @@ struct TripleType {
 };
 template <>
 struct TripleType<double> {
-  using type = Four;
+  using type = Double4;
 };
-/// A vector in space: of doubles in one register, as a Four whose last number is zero.
+/// A vector in space: of doubles in one register, as a Double4 whose last number is zero.
 template <typename T>
 using Triple = typename TripleType<T>::type;
 
@@ -31,7 +32,7 @@ struct FrameT {
 };
 template <>
 struct FrameT<double> {
-  Four x = {1, 0, 0, 0}, y = {0, 1, 0, 0}, z = {0, 0, 1, 0}, p = {0, 0, 0, 0};
+  Double4 x = {1, 0, 0, 0}, y = {0, 1, 0, 0}, z = {0, 0, 1, 0}, p = {0, 0, 0, 0};
 };
 using Frame = FrameT<double>;
 
@@ -44,7 +45,7 @@ struct ScrewT {
 };
 template <>
 struct ScrewT<double> {
-  Four linear{}, angular{};
+  Double4 linear{}, angular{};
 };
 using Screw = ScrewT<double>;
 
@@ -65,8 +66,8 @@ struct ScrewInertiaT {
 template <>
 struct ScrewInertiaT<double> {
   double mass = 0;
-  Four moment{};
-  Four Ix{}, Iy{}, Iz{};
+  Double4 moment{};
+  Double4 Ix{}, Iy{}, Iz{};
 };
 using ScrewInertia = ScrewInertiaT<double>;
 

@@ -8,18 +8,18 @@
 
 namespace vmech {
 
-// Functions of a few instructions each, which keep the last number of a Four zero. How a Four is
-// passed depends on the instruction set: for the sources of the library alone.
+// Functions of a few instructions each, which keep the last number of a Double4 zero. How a Double4
+// is passed depends on the instruction set: for the sources of the library alone.
 
 /// The last number becomes zero: by a mask, for which compilers find one instruction.
-inline Four FirstThree(const Four& a) noexcept {
+inline Double4 FirstThree(const Double4& a) noexcept {
   using Bits = long long __attribute__((vector_size(32)));
-  return reinterpret_cast<Four>(reinterpret_cast<Bits>(a) & Bits{-1, -1, -1, 0});
+  return reinterpret_cast<Double4>(reinterpret_cast<Bits>(a) & Bits{-1, -1, -1, 0});
 }
-inline Four FourOf(const Vector3d& a) noexcept {
-  return FirstThree(Four{a[0], a[1], a[2], a[2]});
+inline Double4 Double4Of(const Vector3d& a) noexcept {
+  return FirstThree(Double4{a[0], a[1], a[2], a[2]});
 }
-inline Vector3d Vector3Of(const Four& a) noexcept {
+inline Vector3d Vector3Of(const Double4& a) noexcept {
   return {a[0], a[1], a[2]};
 }
 template <typename T>
@@ -29,7 +29,7 @@ inline const Vector3<T>& Vector3Of(const Vector3<T>& a) noexcept {
 template <typename T>
 inline Triple<T> ZeroTriple() noexcept {
   if constexpr (std::is_same_v<T, double>) {
-    return Four{};
+    return Double4{};
   } else {
     return Vector3<T>::Zero();
   }
@@ -38,7 +38,7 @@ inline Triple<T> ZeroTriple() noexcept {
 template <typename T>
 inline Triple<T> TripleOf(const std::type_identity_t<Vector3<T>>& a) noexcept {
   if constexpr (std::is_same_v<T, double>) {
-    return FourOf(a);
+    return Double4Of(a);
   } else {
     return a;
   }
@@ -46,16 +46,16 @@ inline Triple<T> TripleOf(const std::type_identity_t<Vector3<T>>& a) noexcept {
 template <typename T>
 inline Triple<T> TripleOf(const T& x, const T& y, const T& z) noexcept {
   if constexpr (std::is_same_v<T, double>) {
-    return Four{x, y, z, 0};
+    return Double4{x, y, z, 0};
   } else {
     return {x, y, z};
   }
 }
 
-inline Four Cross(const Four& a, const Four& b) noexcept {
-  const Four a_yzx = __builtin_shufflevector(a, a, 1, 2, 0, 3);
-  const Four b_yzx = __builtin_shufflevector(b, b, 1, 2, 0, 3);
-  const Four zxy = a * b_yzx - a_yzx * b;
+inline Double4 Cross(const Double4& a, const Double4& b) noexcept {
+  const Double4 a_yzx = __builtin_shufflevector(a, a, 1, 2, 0, 3);
+  const Double4 b_yzx = __builtin_shufflevector(b, b, 1, 2, 0, 3);
+  const Double4 zxy = a * b_yzx - a_yzx * b;
   return __builtin_shufflevector(zxy, zxy, 1, 2, 0, 3);
 }
 template <typename A, typename B>
@@ -63,15 +63,15 @@ inline Vector3<typename A::Scalar> Cross(const Eigen::MatrixBase<A>& a,
                                          const Eigen::MatrixBase<B>& b) {
   return a.cross(b);
 }
-inline double Dot(const Four& a, const Four& b) noexcept {
-  const Four ab = a * b;
+inline double Dot(const Double4& a, const Double4& b) noexcept {
+  const Double4 ab = a * b;
   return (ab[0] + ab[2]) + ab[1];
 }
 template <typename A, typename B>
 inline typename A::Scalar Dot(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
   return a.dot(b);
 }
-inline double Length(const Four& a) noexcept {
+inline double Length(const Double4& a) noexcept {
   return std::sqrt(Dot(a, a));
 }
 
@@ -84,17 +84,17 @@ template <typename T>
 inline Triple<T> Rotate(const FrameT<T>& X, const std::type_identity_t<Triple<T>>& a) noexcept {
   return a[0] * X.x + a[1] * X.y + a[2] * X.z;
 }
-inline Four Rotate(const Frame& X, const Vector3d& a) noexcept {
+inline Double4 Rotate(const Frame& X, const Vector3d& a) noexcept {
   return Rotate(X, a[0], a[1], a[2]);
 }
 /// R'a.
-inline Four InverseRotate(const Frame& X, const Four& a) noexcept {
-  const Four x = X.x * a, y = X.y * a, z = X.z * a, zero{};
+inline Double4 InverseRotate(const Frame& X, const Double4& a) noexcept {
+  const Double4 x = X.x * a, y = X.y * a, z = X.z * a, zero{};
   // By halves of registers: one instruction each.
-  const auto sums = [](const Four& a, const Four& b) {
+  const auto sums = [](const Double4& a, const Double4& b) {
     return __builtin_shufflevector(a, b, 0, 4, 2, 6) + __builtin_shufflevector(a, b, 1, 5, 3, 7);
   };
-  const Four xy = sums(x, y), z0 = sums(z, zero);
+  const Double4 xy = sums(x, y), z0 = sums(z, zero);
   return __builtin_shufflevector(xy, z0, 0, 1, 4, 5) + __builtin_shufflevector(xy, z0, 2, 3, 6, 7);
 }
 template <typename T>
@@ -114,7 +114,7 @@ inline Triple<T> PointInWorld(const FrameT<T>& X,
                               const std::type_identity_t<Triple<T>>& p) noexcept {
   return X.p + Rotate(X, p);
 }
-inline Four PointInWorld(const Frame& X, const Vector3d& p) noexcept {
+inline Double4 PointInWorld(const Frame& X, const Vector3d& p) noexcept {
   return X.p + Rotate(X, p);
 }
 /// X_WB X_BC.
@@ -129,11 +129,11 @@ inline Frame FrameOf(const Posed& X) noexcept {
   // R and p as the twelve numbers that they are: whole registers, one number too many in each.
   static_assert(sizeof(X) == 12 * sizeof(double));
   const auto from = [&](int i) {
-    Four four;
+    Double4 four;
     std::memcpy(&four, reinterpret_cast<const char*>(&X) + i * sizeof(double), sizeof(four));
     return four;
   };
-  const Four p = from(8);
+  const Double4 p = from(8);
   return {FirstThree(from(0)), FirstThree(from(3)), FirstThree(from(6)),
           FirstThree(__builtin_shufflevector(p, p, 1, 2, 3, 0))};
 }
@@ -144,8 +144,8 @@ inline FrameT<T> FrameOf(const Pose<T>& X) noexcept {
 inline Matrix3d RotationOf(const Frame& X) noexcept {
   Matrix3d R;
   // Each column's fourth number falls on the next column, which comes after it.
-  std::memcpy(R.data(), &X.x, sizeof(Four));
-  std::memcpy(R.data() + 3, &X.y, sizeof(Four));
+  std::memcpy(R.data(), &X.x, sizeof(Double4));
+  std::memcpy(R.data() + 3, &X.y, sizeof(Double4));
   std::memcpy(R.data() + 6, &X.z, 3 * sizeof(double));
   return R;
 }
@@ -161,7 +161,7 @@ inline Pose<T> PoseOf(const FrameT<T>& X) noexcept {
 }
 
 inline Screw ScrewOf(const Vector6d& a) noexcept {
-  return {FirstThree(Four{a[0], a[1], a[2], a[2]}), FirstThree(Four{a[3], a[4], a[5], a[5]})};
+  return {FirstThree(Double4{a[0], a[1], a[2], a[2]}), FirstThree(Double4{a[3], a[4], a[5], a[5]})};
 }
 template <typename T>
 inline Vector6<T> Vector6Of(const ScrewT<T>& a) noexcept {
@@ -200,7 +200,7 @@ inline Screw Scaled(const Screw& gains, const Screw& a) noexcept {
 
 /// The power of a wrench on a twist.
 inline double Power(const Screw& wrench, const Screw& twist) noexcept {
-  const Four power = wrench.linear * twist.linear + wrench.angular * twist.angular;
+  const Double4 power = wrench.linear * twist.linear + wrench.angular * twist.angular;
   return (power[0] + power[2]) + power[1];
 }
 template <typename T>
@@ -214,7 +214,7 @@ inline Triple<T> VelocityAt(const std::type_identity_t<Triple<T>>& p_WQ,
   return twist.linear + Cross(twist.angular, p_WQ);
 }
 /// A wrench that is given about a point Q.
-inline Screw WrenchAt(const Four& p_WQ, const Four& force, const Four& moment) noexcept {
+inline Screw WrenchAt(const Double4& p_WQ, const Double4& force, const Double4& moment) noexcept {
   return {force, moment + Cross(p_WQ, force)};
 }
 template <typename T>

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstring>
 
-#include "vmech/base/packet.h"
+#include "vmech/base/lanes4.h"
 
 namespace vmech {
 
@@ -13,8 +13,8 @@ inline void StoreLanes(const double* values, int count, double* row, ptrdiff_t /
   std::copy_n(values, count, row);
 }
 
-/// Four packets at a time, transposed in registers.
-inline void StoreLanes(const Packet* values, int count, double* row, ptrdiff_t stride) {
+/// Double4 packets at a time, transposed in registers.
+inline void StoreLanes(const Lanes4* values, int count, double* row, ptrdiff_t stride) {
   using Lanes = double __attribute__((vector_size(32)));
   for (; count >= 4; count -= 4, values += 4, row += 4) {
     Lanes a, b, c, d;
@@ -35,7 +35,7 @@ inline void StoreLanes(const Packet* values, int count, double* row, ptrdiff_t s
     }
   }
   for (int k = 0; k < count; ++k) {
-    for (int lane = 0; lane < Packet::kLanes; ++lane) row[lane * stride + k] = values[k][lane];
+    for (int lane = 0; lane < Lanes4::kLanes; ++lane) row[lane * stride + k] = values[k][lane];
   }
 }
 

@@ -1,9 +1,10 @@
 //%% [markdown]
 // # The four-bar linkage
 //
-// Four links, four hinges, one loop: the smallest mechanism that shows what a closed chain is. This
-// chapter reads it from a file, finds out how it can move, turns its crank once, and asks what each
-// hinge must carry. Every number is checked where it stands; the chapter fails if one is wrong.
+// Double4 links, four hinges, one loop: the smallest mechanism that shows what a closed chain is.
+// This chapter reads it from a file, finds out how it can move, turns its crank once, and asks what
+// each hinge must carry. Every number is checked where it stands; the chapter fails if one is
+// wrong.
 
 //%%
 #include <fmt/format.h>

@@ -144,8 +144,8 @@ int main(int argc, char** argv) {
   // ## Differentiating an encoder
   //
   // The paper renders inertia from the acceleration, differentiated twice from the encoder. A step
-  // of the encoder, over the period squared, is the noise of that. Four ways to do it, with a swing
-  // of 0.3 rad at 1.5 Hz:
+  // of the encoder, over the period squared, is the noise of that. Double4 ways to do it, with a
+  // swing of 0.3 rad at 1.5 Hz:
 
   //%%
   plot::LinePlot noise;

@@ -270,8 +270,14 @@ class NullspaceWorkspace::Solver {
   bool TrialDescends(const VectorXd& x, double allowed) {
     problem_->Plus(x, trial_d_, &trial_x_);
     at_trial_.Evaluate(*problem_, trial_x_);
-    const double c_norm = std::sqrt(SquaredNorm(at_trial_.c));
-    return 0.5 * SquaredNorm(at_trial_.r) + nu_ * c_norm <= allowed;
+    return Merit(at_trial_) <= allowed;
+  }
+
+  // What is within the tolerance counts as closed: beside a small objective its rounding would be
+  // taken for a constraint that gets worse.
+  double Merit(const Linearization& at) const {
+    const double open = std::sqrt(SquaredNorm(at.c)) - options_->stopping.constraint_tolerance;
+    return 0.5 * SquaredNorm(at.r) + nu_ * std::max(0.0, open);
   }
 
   // Backtracking on 1/2 |r|^2 + nu |c|; the full step gets a second-order correction before it is
@@ -281,7 +287,7 @@ class NullspaceWorkspace::Solver {
     residual_ = at_x_.c;
     AddProduct(at_x_.C.data(), Size(residual_), Size(d_), d_.data(), residual_.data());
     const double slope = RaiseWeight(c_norm - std::sqrt(SquaredNorm(residual_)));
-    const double merit = 0.5 * SquaredNorm(at_x_.r) + nu_ * c_norm;
+    const double merit = Merit(at_x_);
     const double noise = kRounding * std::abs(merit);
     for (double t = 1; t > kShortestStep; t *= 0.5) {
       const double allowed = merit + kSufficientDecrease * t * slope + noise;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "vmech/base/dual.h"
-#include "vmech/base/packet.h"
+#include "vmech/base/lanes4.h"
 
 namespace vmech {
 
@@ -76,6 +76,6 @@ void EnvelopeLdlt<T>::Solve(T* x) const {
 
 template class EnvelopeLdlt<double>;
 template class EnvelopeLdlt<Dual>;
-template class EnvelopeLdlt<Packet>;
+template class EnvelopeLdlt<Lanes4>;
 
 }  // namespace vmech

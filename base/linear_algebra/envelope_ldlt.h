@@ -9,7 +9,7 @@ namespace vmech {
 /// matrices that are positive semidefinite, or saddle points [P C; C' 0] ordered so that every
 /// leading block has C of full column rank. Sized once, then without allocation.
 ///
-/// T is double or Packet (four matrices of one envelope).
+/// T is double or Lanes4 (four matrices of one envelope).
 ///
 /// A pivot that cancels to less than `kSingular` of the terms it is the difference of is taken as
 /// zero: its unknown is held at zero by Solve, and counted.

@@ -19,13 +19,13 @@ void Gram(double w, const double* B, int rows, int size, double* G) noexcept {
   const int n = kSize > 0 ? kSize : size, m = kRows > 0 ? kRows : rows;
   for (int j = 0; j < n; ++j) {
     const double* B_j = B + j * m;
-    const double square = G[j * n + j] = w * DotOfFours(B_j, B_j, m);
+    const double square = G[j * n + j] = w * DotOfDouble4(B_j, B_j, m);
     if (kSize == 0 && square == 0) {
       for (int i = j + 1; i < n; ++i) G[j * n + i] = G[i * n + j] = 0;
       continue;
     }
     for (int i = j + 1; i < n; ++i) {
-      G[j * n + i] = G[i * n + j] = w * DotOfFours(B + i * m, B_j, m);
+      G[j * n + i] = G[i * n + j] = w * DotOfDouble4(B + i * m, B_j, m);
     }
   }
 }
@@ -35,9 +35,9 @@ template <int kSize>
 void AddGramOfEight(const double* B, int size, double* A) noexcept {
   const int n = kSize > 0 ? kSize : size;
   for (int j = 0; j < n; ++j) {
-    A[j * n + j] += DotOfFours(B + j * 8, B + j * 8, 8);
+    A[j * n + j] += DotOfDouble4(B + j * 8, B + j * 8, 8);
     for (int i = j + 1; i < n; ++i) {
-      A[i * n + j] = A[j * n + i] += DotOfFours(B + i * 8, B + j * 8, 8);
+      A[i * n + j] = A[j * n + i] += DotOfDouble4(B + i * 8, B + j * 8, 8);
     }
   }
 }
@@ -55,9 +55,9 @@ void Multiply(double w, const double* C, int rows, const double* t, double s, co
               int size, double* mu) noexcept {
   const int n = kSize > 0 ? kSize : size, m = kRows > 0 ? kRows : rows;
   for (int i = 0; i < m; i += 4) {
-    Four sum = -s * LoadFour(d + i);
+    Double4 sum = -s * LoadFour(d + i);
     for (int j = 0; j < n; ++j) sum += t[j] * LoadFour(C + j * m + i);
-    StoreFour(w * sum, mu + i);
+    StoreDouble4(w * sum, mu + i);
   }
 }
 
@@ -67,9 +67,9 @@ void AddProduct(const double* A, const double* x, int size, double* y) noexcept 
   const int n = kSize > 0 ? kSize : size;
   int i = 0;
   for (; i + 4 <= n; i += 4) {
-    Four sum = LoadFour(y + i);
+    Double4 sum = LoadFour(y + i);
     for (int j = 0; j < n; ++j) sum += x[j] * LoadFour(A + j * n + i);
-    StoreFour(sum, y + i);
+    StoreDouble4(sum, y + i);
   }
   for (; i < n; ++i) {
     double sum = y[i];
@@ -83,7 +83,7 @@ template <int kSize, int kRows>
 void AddTransposed(double w, const double* C, int rows, const double* d, const double* b, int size,
                    double* y) noexcept {
   const int n = kSize > 0 ? kSize : size, m = kRows > 0 ? kRows : rows;
-  for (int j = 0; j < n; ++j) y[j] = b[j] + w * DotOfFours(C + j * m, d, m);
+  for (int j = 0; j < n; ++j) y[j] = b[j] + w * DotOfDouble4(C + j * m, d, m);
 }
 
 /// The solves. The multipliers act as forces C'mu = b - A x, so that C is needed only in the end:

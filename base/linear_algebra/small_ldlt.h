@@ -4,7 +4,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "vmech/base/four.h"
+#include "vmech/base/double4.h"
 
 namespace vmech {
 
@@ -12,18 +12,18 @@ namespace vmech {
 // are column by column without gaps. Where the size is given as kSize it is not looked at, and the
 // compiler unrolls: twice as fast for the few unknowns of one loop. kSize = 0 is for any size.
 
-inline Four LoadFour(const double* x) noexcept {
-  Four four;
+inline Double4 LoadFour(const double* x) noexcept {
+  Double4 four;
   std::memcpy(&four, x, sizeof(four));
   return four;
 }
-inline void StoreFour(const Four& four, double* x) noexcept {
+inline void StoreDouble4(const Double4& four, double* x) noexcept {
   std::memcpy(x, &four, sizeof(four));
 }
 
 /// a'b of whole registers, at least one.
-inline double DotOfFours(const double* a, const double* b, int m) noexcept {
-  Four sum = LoadFour(a) * LoadFour(b);
+inline double DotOfDouble4(const double* a, const double* b, int m) noexcept {
+  Double4 sum = LoadFour(a) * LoadFour(b);
   for (int k = 4; k < m; k += 4) sum += LoadFour(a + k) * LoadFour(b + k);
   return (sum[0] + sum[2]) + (sum[1] + sum[3]);
 }
@@ -33,7 +33,7 @@ inline double Dot(const double* a, const double* b, int m) noexcept {
   double rest = 0;
   if (m & 1) --m, rest = a[m] * b[m];
   if (m & 2) m -= 2, rest += a[m] * b[m] + a[m + 1] * b[m + 1];
-  return m == 0 ? rest : DotOfFours(a, b, m) + rest;
+  return m == 0 ? rest : DotOfDouble4(a, b, m) + rest;
 }
 
 /// y += s x for the entries from `from` to `to`, four at a time from multiples of four on: what one
@@ -41,7 +41,7 @@ inline double Dot(const double* a, const double* b, int m) noexcept {
 inline void AddScaled(double s, const double* x, int from, int to, double* y) noexcept {
   int k = from;
   for (; k % 4 != 0 && k < to; ++k) y[k] += s * x[k];
-  for (; k + 4 <= to; k += 4) StoreFour(LoadFour(y + k) + s * LoadFour(x + k), y + k);
+  for (; k + 4 <= to; k += 4) StoreDouble4(LoadFour(y + k) + s * LoadFour(x + k), y + k);
   for (; k < to; ++k) y[k] += s * x[k];
 }
 

@@ -15,7 +15,7 @@ constexpr double kSameWay = 1e-3;      // of a velocity, across the last
 constexpr double kMuchFaster = 10;     // than in the last step
 
 double SquaredNorm(const VectorXd& a) {
-  return DotOfFours(a.data(), a.data(), static_cast<int>(a.size()));
+  return DotOfDouble4(a.data(), a.data(), static_cast<int>(a.size()));
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ MatrixXd PaddedSquare(int n) {
 }
 
 double SquaredSpeed(const VectorXd& v) {
-  return DotOfFours(v.data(), v.data(), static_cast<int>(v.size()));
+  return DotOfDouble4(v.data(), v.data(), static_cast<int>(v.size()));
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ void GraspedMechanism::SetJacobians() noexcept {
 }
 
 Frame GraspedMechanism::grasp_frame() const noexcept {
-  return {G_.x, G_.y, G_.z, G_.p + FourOf(ws_.reference)};
+  return {G_.x, G_.y, G_.z, G_.p + Double4Of(ws_.reference)};
 }
 
 Posed GraspedMechanism::X_WG() const noexcept {
@@ -73,8 +73,8 @@ Matrix6Xd GraspedMechanism::J() const {
 void GraspedMechanism::ComputeWeightedJacobian(const Screw& root, MatrixXd* B) const noexcept {
   for (int i = 0; i < tree_.nv; ++i) {
     const Screw column = Scaled(root, J_[i]);
-    StoreFour(column.linear, &(*B)(0, i));
-    StoreFour(column.angular, &(*B)(4, i));
+    StoreDouble4(column.linear, &(*B)(0, i));
+    StoreDouble4(column.angular, &(*B)(4, i));
   }
 }
 
@@ -110,7 +110,7 @@ void GraspedMechanism::ComputeLoopBias(double s, VectorXd* d) noexcept {
 Screw GraspedMechanism::GraspBias() const noexcept {
   const TreeWorkspace<double>::Node& node = ws_.at(grasp_.node);
   const Screw A = node.A - ws_.at(-1).A;
-  const Four a = VelocityAt(G_.p, A) + Cross(node.V.angular, VelocityAt(G_.p, node.V));
+  const Double4 a = VelocityAt(G_.p, A) + Cross(node.V.angular, VelocityAt(G_.p, node.V));
   return {a, A.angular};
 }
 

@@ -26,7 +26,7 @@ HandCoupling Checked(HandCoupling coupling, GraspKind kind) {
 }
 
 /// Of a spring along `way` that pulls with `pull`, and with no more than `most`.
-double SpringEnergy(const Four& way, const Four& pull, double most) {
+double SpringEnergy(const Double4& way, const Double4& pull, double most) {
   const double whole = 0.5 * Dot(way, pull), force2 = Dot(pull, pull);
   if (force2 <= most * most) return whole;
   const double part = most / std::sqrt(force2);  // of the way, until it slips
@@ -34,7 +34,7 @@ double SpringEnergy(const Four& way, const Four& pull, double most) {
 }
 
 /// Shortens a vector to `most`. True if it was longer.
-bool Shorten(double most, Four* a) {
+bool Shorten(double most, Double4* a) {
   const double length2 = Dot(*a, *a);
   if (length2 <= most * most) return false;
   *a *= most / std::sqrt(length2);

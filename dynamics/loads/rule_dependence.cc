@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vmech/base/packet.h"
+#include "vmech/base/lanes4.h"
 #include "vmech/dynamics/loads/pose/pose_loads.h"
 #include "vmech/kinematics/inverse/inverse_kinematics.h"
 #include "vmech/mechanisms/freedoms.h"
@@ -156,11 +156,11 @@ RuleDependence FindRuleDependence(const PreparedStudy& prepared, const Motion& m
   const Motion judged = PosesOf(model, motion, poses);
   const std::vector<Choice> others = OtherChoices(model, judged);
   Comparison<double> one(model, judged, others);
-  Comparison<Packet> four(model, judged, others);
+  Comparison<Lanes4> four(model, judged, others);
   for (size_t i = 0; i < poses.size();) {
-    const bool at_once = RunsInPackets(model) && i + Packet::kLanes <= poses.size();
+    const bool at_once = RunsInLanes(model) && i + Lanes4::kLanes <= poses.size();
     if (at_once && four.At(i, &result)) {
-      i += Packet::kLanes;
+      i += Lanes4::kLanes;
     } else {
       one.At(i++, &result);
     }

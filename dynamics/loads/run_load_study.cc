@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "vmech/base/packet.h"
+#include "vmech/base/lanes4.h"
 #include "vmech/dynamics/loads/friction_report.h"
 #include "vmech/dynamics/loads/load_peaks.h"
 #include "vmech/dynamics/loads/load_result.h"
@@ -67,15 +67,15 @@ class ParallelEvaluation {
  private:
   void Work(bool reports) {
     LoadWorkspace<double> ws(model_);
-    LoadWorkspace<Packet> packet_ws(model_);
-    const bool in_packets = RunsInPackets(model_);
+    LoadWorkspace<Lanes4> packet_ws(model_);
+    const bool in_packets = RunsInLanes(model_);
     for (;;) {
       const size_t begin = next_.fetch_add(kChunk);
       if (begin >= motion_.size() || stopped_) return;
       const size_t end = std::min(begin + kChunk, motion_.size());
       for (size_t i = begin; i < end;) {
-        if (in_packets && i + Packet::kLanes <= end && Evaluate(i, &packet_ws)) {
-          i += Packet::kLanes;
+        if (in_packets && i + Lanes4::kLanes <= end && Evaluate(i, &packet_ws)) {
+          i += Lanes4::kLanes;
         } else if (Evaluate(i, &ws)) {
           ++i;
         } else {

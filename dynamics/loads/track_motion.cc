@@ -7,7 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "vmech/base/packet.h"
+#include "vmech/base/lanes4.h"
 #include "vmech/dynamics/loads/pose/hand_wrench.h"
 #include "vmech/dynamics/loads/pose/idle_freedoms.h"
 #include "vmech/dynamics/loads/pose/resting_friction.h"
@@ -33,7 +33,7 @@ class Tracker {
         dependents_(tree_, model_.partition),
         packet_ws_(tree_),
         packet_dependents_(tree_, model_.partition),
-        packet_q_(tree_.nq, Packet(0)),
+        packet_q_(tree_.nq, Lanes4(0)),
         packet_predicted_(packet_q_),
         idle_(model_),
         q_(prepared.q_start),
@@ -85,22 +85,22 @@ class Tracker {
     SettleIdle();
   }
 
-  /// Four poses at once, if their predictions are good enough; otherwise nothing is done.
+  /// Double4 poses at once, if their predictions are good enough; otherwise nothing is done.
   bool AdvancePacket(const double* times) {
     if (study_.hand || model_.idle > 0 || history_ < 3) return false;
     const size_t first = motion_.size();
-    for (int lane = 0; lane < Packet::kLanes; ++lane) RecordDrives(times[lane]);
+    for (int lane = 0; lane < Lanes4::kLanes; ++lane) RecordDrives(times[lane]);
     PredictPacket(first);
-    const Packet error = CloseByNewton(tree_, tolerance_, kNewtonSteps, &packet_dependents_,
+    const Lanes4 error = CloseByNewton(tree_, tolerance_, kNewtonSteps, &packet_dependents_,
                                        &packet_ws_, packet_q_.data());
-    if (!AllLanes(error <= Packet(tolerance_)) || !StaysOnBranch()) {
+    if (!AllLanes(error <= Lanes4(tolerance_)) || !StaysOnBranch()) {
       ForgetDrives(first);
       return false;
     }
     for (size_t l = 0; l < tree_.loops.size(); ++l) {
       packet_cut_[l] = CutJointCoordinates(tree_.loops[l], packet_ws_.loops[l]);
     }
-    for (int lane = 0; lane < Packet::kLanes; ++lane) {
+    for (int lane = 0; lane < Lanes4::kLanes; ++lane) {
       q_past_[2].swap(q_past_[1]);
       q_past_[1].swap(q_past_[0]);
       q_past_[0].swap(q_);
@@ -221,27 +221,27 @@ class Tracker {
 
   /// The polynomial of Extrapolate, one pose ahead and more.
   void PredictPacket(size_t pose) {
-    const Packet n = Packet::Of([](int lane) { return lane + 1.0; });
-    const Packet a = (n + 1) * (n + 2) * (n + 3) / 6, b = n * (n + 2) * (n + 3) / 2,
+    const Lanes4 n = Lanes4::Of([](int lane) { return lane + 1.0; });
+    const Lanes4 a = (n + 1) * (n + 2) * (n + 3) / 6, b = n * (n + 2) * (n + 3) / 2,
                  c = n * (n + 1) * (n + 3) / 2, d = n * (n + 1) * (n + 2) / 6;
     for (int i = 0; i < tree_.nq; ++i) {
       packet_q_[i] = a * q_[i] - b * q_past_[0][i] + c * q_past_[1][i] - d * q_past_[2][i];
     }
     for (size_t k = 0; k < coordinate_.size(); ++k) {
-      packet_q_[coordinate_[k]] = FromLanes<Packet>([&](int lane) {
+      packet_q_[coordinate_[k]] = FromLanes<Lanes4>([&](int lane) {
         return motion_.drives[(pose + lane) * coordinate_.size() + k].position;
       });
     }
-    std::fill(packet_step_.begin(), packet_step_.end(), Packet(0));
+    std::fill(packet_step_.begin(), packet_step_.end(), Lanes4(0));
     MoveCoordinates(tree_, packet_step_.data(), packet_q_.data());  // quaternions to unit length
     packet_predicted_ = packet_q_;
   }
 
   /// Are the corrections of all four predictions to be trusted?
   bool StaysOnBranch() const {
-    Packet size(0), correction(0);
+    Lanes4 size(0), correction(0);
     for (int i = 0; i < tree_.nq; ++i) {
-      const Packet& predicted = packet_predicted_[i];
+      const Lanes4& predicted = packet_predicted_[i];
       size = max(size, abs(predicted - ShiftIn(q_[i], predicted)));
       correction = max(correction, abs(packet_q_[i] - predicted));
     }
@@ -345,11 +345,11 @@ class Tracker {
   double tolerance_;
   TreeWorkspace<double> ws_;
   DependentSolver<double> dependents_;
-  TreeWorkspace<Packet> packet_ws_;
-  DependentSolver<Packet> packet_dependents_;
-  std::vector<Packet> packet_q_, packet_predicted_;
-  std::vector<Vector3<Packet>> packet_cut_ = std::vector<Vector3<Packet>>(tree_.loops.size());
-  std::vector<Packet> packet_step_ = std::vector<Packet>(tree_.nv, Packet(0));
+  TreeWorkspace<Lanes4> packet_ws_;
+  DependentSolver<Lanes4> packet_dependents_;
+  std::vector<Lanes4> packet_q_, packet_predicted_;
+  std::vector<Vector3<Lanes4>> packet_cut_ = std::vector<Vector3<Lanes4>>(tree_.loops.size());
+  std::vector<Lanes4> packet_step_ = std::vector<Lanes4>(tree_.nv, Lanes4(0));
   IdlePositions idle_;
   std::optional<InverseKinematics> hand_;
   VectorXd q_, q_trial_, q_predicted_;
@@ -371,8 +371,8 @@ Motion TrackMotion(const LoadStudy& study, const PreparedStudy& prepared,
   tracker.Approach();
   const std::vector<double>& times = study.times;
   for (size_t i = 0; i < times.size();) {
-    if (i + Packet::kLanes <= times.size() && tracker.AdvancePacket(&times[i])) {
-      i += Packet::kLanes;
+    if (i + Lanes4::kLanes <= times.size() && tracker.AdvancePacket(&times[i])) {
+      i += Lanes4::kLanes;
       continue;
     }
     tracker.Advance(times[i], i);

@@ -1,7 +1,7 @@
 #include "vmech/dynamics/reactions/joint_wrenches.h"
 
 #include "vmech/base/dual.h"
-#include "vmech/base/packet.h"
+#include "vmech/base/lanes4.h"
 #include "vmech/base/screw_algebra.h"
 #include "vmech/kinematics/loops/loops.h"
 
@@ -70,7 +70,7 @@ void ApplyMultipliers(const KinematicTree& tree, const T* mu, TreeWorkspace<T>* 
                                     std::vector<JointState<T>>*) noexcept;
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
-VMECH_INSTANTIATE(Packet)
+VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "vmech/base/dual.h"
-#include "vmech/base/packet.h"
+#include "vmech/base/lanes4.h"
 #include "vmech/base/screw_algebra.h"
 #include "vmech/kinematics/loops/loops.h"
 #include "vmech/mechanisms/freedoms.h"
@@ -184,6 +184,6 @@ void ReactionSolver<T>::Solve(const std::vector<JointState<T>>& joints, const T*
 
 template class ReactionSolver<double>;
 template class ReactionSolver<Dual>;
-template class ReactionSolver<Packet>;
+template class ReactionSolver<Lanes4>;
 
 }  // namespace vmech

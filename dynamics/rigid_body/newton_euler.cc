@@ -1,7 +1,7 @@
 #include "vmech/dynamics/rigid_body/newton_euler.h"
 
 #include "vmech/base/dual.h"
-#include "vmech/base/packet.h"
+#include "vmech/base/lanes4.h"
 #include "vmech/base/screw_algebra.h"
 
 namespace vmech {
@@ -21,8 +21,8 @@ ScrewInertiaT<T> InertiaInWorld(const typename TreeInertias<T>::Body& body, cons
 }
 
 Screw MomentumOf(const TreeInertias<double>::Body& body, const Frame& X, const Screw& V) {
-  const Four c = PointInWorld(X, body.p_BoBcm), w_B = InverseRotate(X, V.angular);
-  const Four spin_B = w_B[0] * body.Ix + w_B[1] * body.Iy + w_B[2] * body.Iz;
+  const Double4 c = PointInWorld(X, body.p_BoBcm), w_B = InverseRotate(X, V.angular);
+  const Double4 spin_B = w_B[0] * body.Ix + w_B[1] * body.Iy + w_B[2] * body.Iz;
   return WrenchAt(c, body.mass * VelocityAt(c, V), Rotate(X, spin_B));
 }
 
@@ -172,9 +172,9 @@ double KineticEnergy(const KinematicTree& tree, const TreeInertias<double>& iner
 }
 
 double WeightEnergy(const KinematicTree& tree, const TreeInertias<double>& inertias) noexcept {
-  Four moment{};
+  Double4 moment{};
   for (const ScrewInertia& body : inertias.bodies) moment += body.moment;
-  return -Dot(FourOf(tree.mechanism.gravity_W), moment);
+  return -Dot(Double4Of(tree.mechanism.gravity_W), moment);
 }
 
 MatrixXd MassMatrix(const KinematicTree& tree, const VectorXd& q) {
@@ -214,7 +214,7 @@ VectorXd BiasForces(const KinematicTree& tree, const VectorXd& q, const VectorXd
   template void GeneralisedForces<T>(const KinematicTree&, const TreeWorkspace<T>&, T*) noexcept;
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
-VMECH_INSTANTIATE(Packet)
+VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)
 

@@ -59,7 +59,7 @@ const Matrix6Xd& ArmModel::J() noexcept {
 }
 
 Screw ArmModel::WrenchAtBase(const Vector6d& F_Ho) const noexcept {
-  const Four p_DH = PointInWorld(ws_.at(arm_->handle_node).X, arm_->X_BH.p);
+  const Double4 p_DH = PointInWorld(ws_.at(arm_->handle_node).X, arm_->X_BH.p);
   const Screw F = ScrewOf(F_Ho);
   return WrenchAt(p_DH, F.linear, F.angular);
 }

@@ -11,16 +11,16 @@ namespace {
 
 /// a = A x for a with the columns A: x = (row[0] a, row[1] a, row[2] a)/det.
 struct InverseOfColumns {
-  InverseOfColumns(const Four& a0, const Four& a1, const Four& a2)
+  InverseOfColumns(const Double4& a0, const Double4& a1, const Double4& a2)
       : rows{Cross(a1, a2), Cross(a2, a0), Cross(a0, a1)}, scale(1 / Dot(rows.x, a0)) {}
-  Four operator*(const Four& a) const { return scale * InverseRotate(rows, a); }
+  Double4 operator*(const Double4& a) const { return scale * InverseRotate(rows, a); }
 
   Frame rows;
   double scale;
 };
 
 /// s_0 a_0 + s_1 a_1 + s_2 a_2.
-Four Combined(const Four& s, const Four& a0, const Four& a1, const Four& a2) {
+Double4 Combined(const Double4& s, const Double4& a0, const Double4& a1, const Double4& a2) {
   return s[0] * a0 + s[1] * a1 + s[2] * a2;
 }
 
@@ -48,15 +48,15 @@ bool HandleNullSpace::FindByBlocks(const std::vector<Screw>& S,
   const Screw &a0 = column(0), &a1 = column(1), &a2 = column(2);
   const InverseOfColumns first(a0.linear, a1.linear, a2.linear);
   const auto first_shares = [&](int k) { return first * column(k).linear; };
-  const auto angular_left = [&](int k, const Four& s) {
+  const auto angular_left = [&](int k, const Double4& s) {
     return column(k).angular - Combined(s, a0.angular, a1.angular, a2.angular);
   };
-  const Four s3 = first_shares(3), s4 = first_shares(4), s5 = first_shares(5);
+  const Double4 s3 = first_shares(3), s4 = first_shares(4), s5 = first_shares(5);
   const InverseOfColumns second(angular_left(3, s3), angular_left(4, s4), angular_left(5, s5));
-  Four growth = s3 * s3 + s4 * s4 + s5 * s5;
+  Double4 growth = s3 * s3 + s4 * s4 + s5 * s5;
   for (int k = 6; k < joints_; ++k) {
-    const Four s = first_shares(k), t = second * angular_left(k, s);
-    const Four r = s - Combined(t, s3, s4, s5);
+    const Double4 s = first_shares(k), t = second * angular_left(k, s);
+    const Double4 r = s - Combined(t, s3, s4, s5);
     growth += r * r + t * t;
     JointArray& motion = (*motions)[k - 6];
     for (int i = 6; i < joints_; ++i) motion[joint_[i]] = i == k ? 1 : 0;

@@ -22,8 +22,8 @@ constexpr double kFinest = 1e-5;                   // [m], [rad]
 constexpr double kNoStop = std::numeric_limits<double>::infinity();
 
 /// Into [-most, most].
-Four Clamped(const Four& a, const Four& most) {
-  const Four below = a < most ? a : most;
+Double4 Clamped(const Double4& a, const Double4& most) {
+  const Double4 below = a < most ? a : most;
   return below > -most ? below : -most;
 }
 
@@ -66,8 +66,8 @@ HandObserver::HandObserver(const HandObserverOptions& options, const DeviceInfo&
   }
   gain_ = GainsFor(options.bandwidth, period_);
   for (int k = 0; k <= kMostPeriods; ++k) new_share_[k] = 1 - std::exp(-k * period_ / kSmoothing);
-  resolution_ = {FourOf(Vector3d::Constant(std::max(info.linear.resolution, kFinest))),
-                 FourOf(Vector3d::Constant(std::max(info.angular.resolution, kFinest)))};
+  resolution_ = {Double4Of(Vector3d::Constant(std::max(info.linear.resolution, kFinest))),
+                 Double4Of(Vector3d::Constant(std::max(info.angular.resolution, kFinest)))};
 }
 
 void HandObserver::Update(const MasterState& state, const Vector6d& F_Ho_D, int periods) noexcept {

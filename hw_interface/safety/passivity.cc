@@ -20,7 +20,7 @@ PassivityController::PassivityController(const PassivityOptions& options, const 
   options.Validate();
   const double lever2 = options.lever * options.lever;
   const auto isotropic = [](double linear, double angular) {
-    return Screw{FourOf(Vector3d::Constant(linear)), FourOf(Vector3d::Constant(angular))};
+    return Screw{Double4Of(Vector3d::Constant(linear)), Double4Of(Vector3d::Constant(angular))};
   };
   own_damping_ = isotropic(info.linear.damping, info.angular.damping);
   weight_ = isotropic(1, lever2);

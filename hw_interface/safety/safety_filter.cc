@@ -14,7 +14,7 @@ bool IsLatched(ForceOff cause) {
   return cause >= ForceOff::kEmergencyStop;
 }
 
-bool IsFinite(const Four& a) {
+bool IsFinite(const Double4& a) {
   return std::isfinite(a[0] + a[1] + a[2]);
 }
 

@@ -8,8 +8,8 @@
 #include <random>
 #include <stdexcept>
 
-#include "vmech/base/screw_algebra.h"
 #include "vmech/base/linear_algebra/linear_algebra.h"
+#include "vmech/base/screw_algebra.h"
 #include "vmech/kinematics/loops/dimensionless_loops.h"
 #include "vmech/kinematics/loops/loops.h"
 #include "vmech/kinematics/loops/mobility.h"
@@ -291,7 +291,7 @@ class ModeSearch {
         const int node = tree_.NodeOfLink(link);
         if (node < 0) continue;
         const Screw& V = ws.at(node).V;
-        const Four v = VelocityAt(ws.at(node).X.p, V);
+        const Double4 v = VelocityAt(ws.at(node).X.p, V);
         if (Length(v) / tree_.length + Length(V.angular) > kMoves) return false;
       }
     }

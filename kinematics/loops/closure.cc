@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "vmech/base/dual.h"
-#include "vmech/base/packet.h"
+#include "vmech/base/lanes4.h"
 #include "vmech/kinematics/loops/loops.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
 
@@ -200,7 +200,7 @@ T CloseByNewton(const KinematicTree& tree, double tolerance, int max_steps,
                               TreeWorkspace<T>*, T*);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
-VMECH_INSTANTIATE(Packet)
+VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)
 

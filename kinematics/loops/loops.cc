@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "vmech/base/dual.h"
-#include "vmech/base/packet.h"
+#include "vmech/base/lanes4.h"
 #include "vmech/base/screw_algebra.h"
 
 namespace vmech {
@@ -395,7 +395,7 @@ T LargestLoopError(const KinematicTree& tree, const TreeWorkspace<T>& ws) {
   template T LargestLoopError<T>(const KinematicTree&, const TreeWorkspace<T>&);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
-VMECH_INSTANTIATE(Packet)
+VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)
 

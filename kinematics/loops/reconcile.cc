@@ -5,8 +5,8 @@
 #include <map>
 #include <utility>
 
-#include "vmech/base/screw_algebra.h"
 #include "vmech/base/rotation_error.h"
+#include "vmech/base/screw_algebra.h"
 #include "vmech/kinematics/loops/closure.h"
 #include "vmech/kinematics/loops/loop_walk.h"
 #include "vmech/kinematics/loops/loops.h"
@@ -74,24 +74,22 @@ class AnchorMoves {
              MatrixXd* P) const {
     const Joint& joint = tree_.mechanism.joints[j];
     const JointPlacement& place = tree_.placements[j];
-    AddAnchor(ws, l, joint.first, ws.at(place.first_node).X * place.X_AF, sign, row_scale,
-              P);
-    AddAnchor(ws, l, joint.second, ws.at(place.second_node).X * place.X_BM, -sign, row_scale,
-              P);
+    AddAnchor(ws, l, joint.first, ws.at(place.first_node).X * place.X_AF, sign, row_scale, P);
+    AddAnchor(ws, l, joint.second, ws.at(place.second_node).X * place.X_BM, -sign, row_scale, P);
   }
 
-  void AddAnchor(const TreeWorkspace<double>& ws, int l, AnchorId id, const Frame& A,
-                 double sign, const VectorXd& row_scale, MatrixXd* P) const {
+  void AddAnchor(const TreeWorkspace<double>& ws, int l, AnchorId id, const Frame& A, double sign,
+                 const VectorXd& row_scale, MatrixXd* P) const {
     const Loop& loop = tree_.loops[l];
     const LoopState<double>& s = ws.loops[l];
     const int column = 6 * index_.at(Id(id.link, id.anchor));
     for (int k = 0; k < 6; ++k) {
-      const Four axis = k % 3 == 0 ? A.x : k % 3 == 1 ? A.y : A.z;
-      const Four linear = k < 3 ? tree_.length * axis : Cross(axis, s.F.p - A.p);
-      const Four angular = k < 3 ? Four{} : axis;
-      const Vector6d opened = sign * ProjectOnRows<double>(loop, s,
-                                                           Vector3Of(InverseRotate(s.F, linear)),
-                                                           Vector3Of(InverseRotate(s.F, angular)));
+      const Double4 axis = k % 3 == 0 ? A.x : k % 3 == 1 ? A.y : A.z;
+      const Double4 linear = k < 3 ? tree_.length * axis : Cross(axis, s.F.p - A.p);
+      const Double4 angular = k < 3 ? Double4{} : axis;
+      const Vector6d opened =
+          sign * ProjectOnRows<double>(loop, s, Vector3Of(InverseRotate(s.F, linear)),
+                                       Vector3Of(InverseRotate(s.F, angular)));
       for (int i = 0; i < loop.rows; ++i) {
         (*P)(loop.row + i, column + k) += row_scale[loop.row + i] * opened[i];
       }

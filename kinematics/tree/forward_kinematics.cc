@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "vmech/base/dual.h"
-#include "vmech/base/packet.h"
+#include "vmech/base/lanes4.h"
 #include "vmech/base/poison.h"
 #include "vmech/base/screw_algebra.h"
 
@@ -20,16 +20,16 @@ void SinesAndCosines(const KinematicTree& tree, const T* q, TreeWorkspace<T>* ws
   }
 }
 
-/// Four at a time, filled up to whole registers.
+/// Double4 at a time, filled up to whole registers.
 void SinesAndCosines(const KinematicTree& tree, const double* q,
                      TreeWorkspace<double>* ws) noexcept {
   const int* angles = tree.revolute_coordinates.data();
   const int count = static_cast<int>(tree.revolute_coordinates.size());
-  for (int k = 0; k < count; k += Packet::kLanes) {
+  for (int k = 0; k < count; k += Lanes4::kLanes) {
     // Number by number: loading four at once would wait for the last of them to be written.
     const auto angle = [&](int lane) { return q[angles[std::min(k + lane, count - 1)]]; };
-    Packet s, c;
-    SinCos(Packet::Of(angle), &s, &c);
+    Lanes4 s, c;
+    SinCos(Lanes4::Of(angle), &s, &c);
     std::memcpy(ws->sine.data() + k, &s, sizeof(s));
     std::memcpy(ws->cosine.data() + k, &c, sizeof(c));
   }
@@ -253,7 +253,7 @@ Vector6d GraspTwist(const TreeWorkspace<double>& ws, int node, const Posed& X_BQ
 }
 
 Vector6d GraspAcceleration(const TreeWorkspace<double>& ws, int node, const Posed& X_BQ) {
-  const Four p = PointInWorld(ws.at(node).X, X_BQ.p);
+  const Double4 p = PointInWorld(ws.at(node).X, X_BQ.p);
   const Screw &V = ws.at(node).V, A = ws.at(node).A - ws.at(-1).A;
   return Vector6Of(Screw{VelocityAt(p, A) + Cross(V.angular, VelocityAt(p, V)), A.angular});
 }
@@ -268,7 +268,7 @@ Vector6d GraspAcceleration(const TreeWorkspace<double>& ws, int node, const Pose
   template void MoveCoordinates<T>(const KinematicTree&, const T*, T*);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
-VMECH_INSTANTIATE(Packet)
+VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)
 

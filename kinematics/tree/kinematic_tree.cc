@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "vmech/base/dual.h"
-#include "vmech/base/packet.h"
+#include "vmech/base/lanes4.h"
 #include "vmech/mechanisms/freedoms.h"
 #include "vmech/mechanisms/validity.h"
 
@@ -320,7 +320,7 @@ int CoordinateIndex(const KinematicTree& tree, int joint, int freedom) {
   template TreeDesign<T> DesignOfTree<T>(const KinematicTree&);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
-VMECH_INSTANTIATE(Packet)
+VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)
 

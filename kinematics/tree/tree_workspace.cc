@@ -1,7 +1,7 @@
 #include "vmech/kinematics/tree/tree_workspace.h"
 
 #include "vmech/base/dual.h"
-#include "vmech/base/packet.h"
+#include "vmech/base/lanes4.h"
 #include "vmech/base/screw_algebra.h"
 
 namespace vmech {
@@ -40,6 +40,6 @@ TreeWorkspace<T>::TreeWorkspace(const KinematicTree& tree, const TreeDesign<T>& 
 
 template struct TreeWorkspace<double>;
 template struct TreeWorkspace<Dual>;
-template struct TreeWorkspace<Packet>;
+template struct TreeWorkspace<Lanes4>;
 
 }  // namespace vmech

@@ -4,13 +4,12 @@
 
 #include "benchmark_studies.h"
 #include "kernels.h"
-#include "vmech/base/packet.h"
+#include "vmech/base/lanes4.h"
 #include "vmech/dynamics/loads/load_result.h"
 #include "vmech/dynamics/loads/pose/pose_loads.h"
 #include "vmech/dynamics/loads/pose/store_pose_loads.h"
 #include "vmech/dynamics/loads/prepare_study.h"
 #include "vmech/dynamics/loads/track_motion.h"
-#include "vmech/dynamics/loads/pose/pose_loads.h"
 
 namespace vmech {
 namespace {
@@ -53,7 +52,7 @@ std::function<void()> SliderCrankTrack() {
 
 int main(int argc, char** argv) {
   return vmech::RunKernel({{"slider_crank_pose", vmech::SliderCrankPose<double>},
-                           {"slider_crank_packet", vmech::SliderCrankPose<vmech::Packet>},
+                           {"slider_crank_packet", vmech::SliderCrankPose<vmech::Lanes4>},
                            {"slider_crank_track", vmech::SliderCrankTrack}},
                           argc, argv);
 }

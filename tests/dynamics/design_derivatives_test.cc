@@ -143,7 +143,7 @@ class EveryDesign : public testing::TestWithParam<DrivenExample> {};
 
 TEST_P(EveryDesign, HasTheDerivativeBySizeThatDifferencesHave) {
   const LoadStudy study = StudyOf(GetParam().name);
-  if (!RunsInPackets(PrepareStudy(study).model)) GTEST_SKIP() << "has local freedoms";
+  if (!RunsInLanes(PrepareStudy(study).model)) GTEST_SKIP() << "has local freedoms";
   ExpectSameDerivative(GetParam().name, Size());
 }
 

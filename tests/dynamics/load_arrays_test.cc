@@ -56,9 +56,9 @@ TEST(PoseLoads, OutlivesTheResultItIsTakenFrom) {
 
 TEST(StoreLanes, GivesEachLaneItsRow) {
   constexpr int kMost = 9, kStride = 11;
-  std::vector<Packet> values;
+  std::vector<Lanes4> values;
   for (int k = 0; k < kMost; ++k) {
-    values.push_back(FromLanes<Packet>([&](int lane) { return 10.0 * k + lane; }));
+    values.push_back(FromLanes<Lanes4>([&](int lane) { return 10.0 * k + lane; }));
   }
   for (int count = 0; count <= kMost; ++count) {
     std::vector<double> rows(4 * kStride, -1);

@@ -7,14 +7,13 @@
 #include <cstring>
 
 #include "driven_examples.h"
-#include "vmech/base/packet.h"
+#include "vmech/base/lanes4.h"
 #include "vmech/dynamics/loads/load_result.h"
 #include "vmech/dynamics/loads/pose/pose_loads.h"
 #include "vmech/dynamics/loads/pose/store_pose_loads.h"
 #include "vmech/dynamics/loads/prepare_study.h"
 #include "vmech/dynamics/loads/run_load_study.h"
 #include "vmech/dynamics/loads/track_motion.h"
-#include "vmech/dynamics/loads/pose/pose_loads.h"
 
 namespace vmech {
 namespace {
@@ -35,21 +34,21 @@ LoadStudy LongStudy(const std::string& example) {
   return study;
 }
 
-/// Four poses at once are the four poses: every wrench, power and rate.
+/// Double4 poses at once are the four poses: every wrench, power and rate.
 TEST(PacketOfPoses, IsEachPoseOfItsOwn) {
   constexpr double kRounding = 1e-12;  // of the largest load: the two round differently
   for (const DrivenExample& example : DrivenExamples()) {
     const LoadStudy study = StudyOf(example.name);
     const PreparedStudy prepared = PrepareStudy(study);
-    if (!RunsInPackets(prepared.model)) continue;
+    if (!RunsInLanes(prepared.model)) continue;
     const Motion motion = TrackMotion(study, prepared, 1e-13);
     LoadWorkspace<double> ws(prepared.model);
-    LoadWorkspace<Packet> packet_ws(prepared.model);
+    LoadWorkspace<Lanes4> packet_ws(prepared.model);
     ASSERT_TRUE(EvaluatePoseLoads(prepared.model, motion, 4, &packet_ws));
     const auto loads = std::make_shared<LoadArrays>(MakeLoadArrays(prepared.model, motion, true));
     const auto single = std::make_shared<LoadArrays>(*loads);
     StorePoseLoads(prepared.model, motion, 4, packet_ws, loads.get());
-    for (int lane = 0; lane < Packet::kLanes; ++lane) {
+    for (int lane = 0; lane < Lanes4::kLanes; ++lane) {
       ASSERT_TRUE(EvaluatePoseLoads(prepared.model, motion, 4 + lane, &ws));
       StorePoseLoads(prepared.model, motion, 4 + lane, ws, single.get());
       const PoseLoads alone(single, 4 + lane), together(loads, 4 + lane);

@@ -77,7 +77,7 @@ TEST(SimbodyModel, SwappedConnectionTurnsTheWrenchRound) {
   EXPECT_LT((answer.accelerations[1].alpha_WL - Vector3d(0, 0, 5)).norm(), kRounding);
 }
 
-// Lengths, masses and inertias of RigidBodyDynamics.jl, example "3. Four-bar linkage". Crank at
+// Lengths, masses and inertias of RigidBodyDynamics.jl, example "3. Double4-bar linkage". Crank at
 // 5 rad/s and 2 rad/s^2, gravity 9.81 m/s^2 along -y. The pin forces are those of a 9x9 free-body
 // matrix and of Lagrange multipliers in maximal coordinates, which agree to 4e-10.
 struct FourBarRow {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "vmech/base/dual.h"
-#include "vmech/base/packet.h"
+#include "vmech/base/lanes4.h"
 
 namespace vmech {
 namespace {
@@ -217,7 +217,7 @@ std::array<UnaccountedLoad, 2> UnaccountedLoads(const Joint& joint, const Wrench
   template Vector3<T> SlidingFriction<T>(JointType, const Vector3<T>&, const Vector3<T>&);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
-VMECH_INSTANTIATE(Packet)
+VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)
 

@@ -7,7 +7,7 @@
 namespace vmech {
 
 /// Dry friction of a joint: what its sliding contacts can exert, and in which direction. The law of
-/// every joint type is here and nowhere else. T: double, or Packet for four poses.
+/// every joint type is here and nowhere else. T: double, or Lanes4 for four poses.
 ///
 /// Each freedom i has a limit f_i = coulomb_i + mu N_i L_i [N] or [N m], with N the load of the
 /// contact [N], mu the coefficient and L its lever (1 for a shift, a radius for a turn):

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "vmech/base/dual.h"
-#include "vmech/base/packet.h"
+#include "vmech/base/lanes4.h"
 #include "vmech/base/screw_algebra.h"
 
 namespace vmech {
@@ -73,7 +73,7 @@ template void EvaluateExternalLoads<double>(const LoadModel&, const Motion&, siz
                                             LoadWorkspace<double>*);
 template void EvaluateExternalLoads<Dual>(const LoadModel&, const Motion&, size_t,
                                           LoadWorkspace<Dual>*);
-template void EvaluateExternalLoads<Packet>(const LoadModel&, const Motion&, size_t,
-                                            LoadWorkspace<Packet>*);
+template void EvaluateExternalLoads<Lanes4>(const LoadModel&, const Motion&, size_t,
+                                            LoadWorkspace<Lanes4>*);
 
 }  // namespace vmech

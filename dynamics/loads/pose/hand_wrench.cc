@@ -64,8 +64,8 @@ void ApplyHandWrench(const LoadModel& model, LoadWorkspace<double>* ws) {
 
 void ApplyHand(const LoadModel& model, LoadWorkspace<double>* ws) {
   const GraspFrame grasp = HandGrasp(model);
-  const Four p = PointInWorld(ws->tree.at(grasp.node).X, grasp.X_BG.p);
-  const Screw W = WrenchAt(p, FourOf(ws->hand.force), FourOf(ws->hand.moment));
+  const Double4 p = PointInWorld(ws->tree.at(grasp.node).X, grasp.X_BG.p);
+  const Screw W = WrenchAt(p, Double4Of(ws->hand.force), Double4Of(ws->hand.moment));
   ApplyAlongBranch(model.tree, grasp.node, W, &ws->tree);
   GeneralisedForces(model.tree, ws->tree, ws->tau.data());
 }

@@ -135,7 +135,7 @@ double ShiftOfCentres(const KinematicTree& tree, const VectorXd& v, TreeWorkspac
   for (size_t i = 0; i < tree.nodes.size(); ++i) {
     if (tree.nodes[i].mass == 0) continue;
     const TreeWorkspace<double>::Node& s = ws->nodes[i + 1];
-    const Four c = PointInWorld(s.X, tree.nodes[i].p_BoBcm);
+    const Double4 c = PointInWorld(s.X, tree.nodes[i].p_BoBcm);
     shift = std::max(shift, Length(VelocityAt(c, s.V)) / tree.length);
   }
   return shift;

@@ -1,7 +1,7 @@
 #include "vmech/dynamics/loads/pose/load_workspace.h"
 
 #include "vmech/base/dual.h"
-#include "vmech/base/packet.h"
+#include "vmech/base/lanes4.h"
 
 namespace vmech {
 
@@ -39,6 +39,6 @@ LoadWorkspace<T>::LoadWorkspace(const LoadModel& model, const TreeDesign<T>& des
 
 template struct LoadWorkspace<double>;
 template struct LoadWorkspace<Dual>;
-template struct LoadWorkspace<Packet>;
+template struct LoadWorkspace<Lanes4>;
 
 }  // namespace vmech

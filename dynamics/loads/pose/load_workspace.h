@@ -19,7 +19,7 @@ struct RestingContact {
 };
 
 /// Memory for one thread, for one model that must outlive it. T is double for one pose at a time,
-/// Packet for four in a row, or Dual for one and its derivative.
+/// Lanes4 for four in a row, or Dual for one and its derivative.
 template <typename T>
 struct LoadWorkspace {
   using VectorX = Eigen::Matrix<T, Eigen::Dynamic, 1>;

@@ -1,7 +1,7 @@
 #include "vmech/dynamics/loads/pose/passive_loads.h"
 
 #include "vmech/base/dual.h"
-#include "vmech/base/packet.h"
+#include "vmech/base/lanes4.h"
 #include "vmech/dynamics/loads/pose/contact_friction.h"
 #include "vmech/dynamics/rigid_body/passive.h"
 #include "vmech/kinematics/loops/loops.h"
@@ -67,7 +67,7 @@ int LockingJoint(const LoadModel& model, const LoadWorkspace<double>& ws, bool s
   template void SpreadPassive<T>(const LoadModel&, LoadWorkspace<T>*);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
-VMECH_INSTANTIATE(Packet)
+VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)
 

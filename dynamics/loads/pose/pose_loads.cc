@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "vmech/base/dual.h"
-#include "vmech/base/packet.h"
+#include "vmech/base/lanes4.h"
 #include "vmech/base/screw_algebra.h"
 #include "vmech/dynamics/loads/pose/external_loads.h"
 #include "vmech/dynamics/loads/pose/hand_wrench.h"
@@ -260,7 +260,7 @@ void DriveForces(const LoadModel& model, LoadWorkspace<T>* ws) {
 
 }  // namespace
 
-bool RunsInPackets(const LoadModel& model) {
+bool RunsInLanes(const LoadModel& model) {
   return !model.hand && model.idle == 0 && !model.has_load_friction &&
          model.rule != ReactionRule::kPaperJoint;
 }
@@ -303,7 +303,7 @@ bool EvaluatePoseLoads(const LoadModel& model, const Motion& motion, size_t pose
   template bool EvaluatePoseLoads<T>(const LoadModel&, const Motion&, size_t, LoadWorkspace<T>*);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
-VMECH_INSTANTIATE(Packet)
+VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)
 

@@ -8,7 +8,7 @@ namespace vmech {
 
 /// Can a packet of poses be evaluated at once? Not where the hand, idle freedoms or friction under
 /// load ask for dense systems or iterations of each pose's own.
-bool RunsInPackets(const LoadModel& model);
+bool RunsInLanes(const LoadModel& model);
 
 /// Velocities, accelerations, drive forces and the wrench of every joint at the closed poses
 /// `pose`, `pose` + 1, ... (as many as T has lanes), from scratch: the same input gives the same

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "vmech/base/dual.h"
-#include "vmech/base/packet.h"
+#include "vmech/base/lanes4.h"
 #include "vmech/base/screw_algebra.h"
 #include "vmech/dynamics/loads/pose/hand_wrench.h"
 
@@ -86,6 +86,6 @@ void EvaluatePower(const LoadModel& model, LoadWorkspace<T>* ws) {
 
 template void EvaluatePower<double>(const LoadModel&, LoadWorkspace<double>*);
 template void EvaluatePower<Dual>(const LoadModel&, LoadWorkspace<Dual>*);
-template void EvaluatePower<Packet>(const LoadModel&, LoadWorkspace<Packet>*);
+template void EvaluatePower<Lanes4>(const LoadModel&, LoadWorkspace<Lanes4>*);
 
 }  // namespace vmech

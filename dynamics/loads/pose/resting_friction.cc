@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "vmech/base/dual.h"
+#include "vmech/base/lanes4.h"
 #include "vmech/base/linear_algebra/linear_algebra.h"
-#include "vmech/base/packet.h"
 #include "vmech/dynamics/loads/pose/contact_friction.h"
 #include "vmech/dynamics/rigid_body/passive.h"
 
@@ -171,6 +171,6 @@ void HoldByFriction(const LoadModel& model, LoadWorkspace<double>* ws) {
 
 template void FindContacts<double>(const LoadModel&, const Motion&, LoadWorkspace<double>*);
 template void FindContacts<Dual>(const LoadModel&, const Motion&, LoadWorkspace<Dual>*);
-template void FindContacts<Packet>(const LoadModel&, const Motion&, LoadWorkspace<Packet>*);
+template void FindContacts<Lanes4>(const LoadModel&, const Motion&, LoadWorkspace<Lanes4>*);
 
 }  // namespace vmech

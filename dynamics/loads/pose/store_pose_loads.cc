@@ -92,7 +92,7 @@ void StorePoseLoads(const LoadModel& model, const Motion& motion, size_t pose,
   template void StorePoseLoads<T>(const LoadModel&, const Motion&, size_t, \
                                   const LoadWorkspace<T>&, LoadArrays*);
 VMECH_INSTANTIATE(double)
-VMECH_INSTANTIATE(Packet)
+VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)
 
