@@ -2,7 +2,7 @@
 
 namespace vmech {
 
-/// Double4 numbers of a column, computed with at once. The alignment is that of plain `new` and of
+/// Four numbers of a column, computed with at once. The alignment is that of plain `new` and of
 /// the stack of a program without AVX, which would be another one for each instruction set if it
 /// were not stated. Not for template arguments (std::vector<Double4>), where g++ forgets it: put it
 /// in a struct.

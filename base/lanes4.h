@@ -6,11 +6,11 @@
 
 namespace vmech {
 
-/// Double4 numbers that are computed with at once. As the scalar T of the kernels it takes four
+/// Four numbers that are computed with at once. As the scalar T of the kernels it takes four
 /// poses through the same lines in the time of about one. Lane k of every result depends on lane k
 /// of the operands alone. What decides by value does so lane by lane, with Select.
 ///
-/// How a packet is passed depends on the instruction set: code that includes this header must be
+/// How they are passed depends on the instruction set: code that includes this header must be
 /// compiled for the same one as the library (VMECH_ARCH).
 class Lanes4 {
   using Lanes = double __attribute__((vector_size(32)));
@@ -140,7 +140,7 @@ struct Eigen::NumTraits<vmech::Lanes4> : Eigen::GenericNumTraits<vmech::Lanes4> 
   };
 };
 
-// A packet brings its alignment with it; Eigen would ask for the less that numbers need.
+// Lanes4 bring their alignment with them; Eigen would ask for the less that numbers need.
 template <int size>
 struct Eigen::internal::compute_default_alignment<vmech::Lanes4, size> {
   enum { value = 0 };

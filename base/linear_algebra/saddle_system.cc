@@ -55,8 +55,8 @@ void Multiply(double w, const double* C, int rows, const double* t, double s, co
               int size, double* mu) noexcept {
   const int n = kSize > 0 ? kSize : size, m = kRows > 0 ? kRows : rows;
   for (int i = 0; i < m; i += 4) {
-    Double4 sum = -s * LoadFour(d + i);
-    for (int j = 0; j < n; ++j) sum += t[j] * LoadFour(C + j * m + i);
+    Double4 sum = -s * LoadDouble4(d + i);
+    for (int j = 0; j < n; ++j) sum += t[j] * LoadDouble4(C + j * m + i);
     StoreDouble4(w * sum, mu + i);
   }
 }
@@ -67,8 +67,8 @@ void AddProduct(const double* A, const double* x, int size, double* y) noexcept 
   const int n = kSize > 0 ? kSize : size;
   int i = 0;
   for (; i + 4 <= n; i += 4) {
-    Double4 sum = LoadFour(y + i);
-    for (int j = 0; j < n; ++j) sum += x[j] * LoadFour(A + j * n + i);
+    Double4 sum = LoadDouble4(y + i);
+    for (int j = 0; j < n; ++j) sum += x[j] * LoadDouble4(A + j * n + i);
     StoreDouble4(sum, y + i);
   }
   for (; i < n; ++i) {

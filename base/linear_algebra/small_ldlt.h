@@ -12,7 +12,7 @@ namespace vmech {
 // are column by column without gaps. Where the size is given as kSize it is not looked at, and the
 // compiler unrolls: twice as fast for the few unknowns of one loop. kSize = 0 is for any size.
 
-inline Double4 LoadFour(const double* x) noexcept {
+inline Double4 LoadDouble4(const double* x) noexcept {
   Double4 four;
   std::memcpy(&four, x, sizeof(four));
   return four;
@@ -23,8 +23,8 @@ inline void StoreDouble4(const Double4& four, double* x) noexcept {
 
 /// a'b of whole registers, at least one.
 inline double DotOfDouble4(const double* a, const double* b, int m) noexcept {
-  Double4 sum = LoadFour(a) * LoadFour(b);
-  for (int k = 4; k < m; k += 4) sum += LoadFour(a + k) * LoadFour(b + k);
+  Double4 sum = LoadDouble4(a) * LoadDouble4(b);
+  for (int k = 4; k < m; k += 4) sum += LoadDouble4(a + k) * LoadDouble4(b + k);
   return (sum[0] + sum[2]) + (sum[1] + sum[3]);
 }
 
@@ -41,7 +41,7 @@ inline double Dot(const double* a, const double* b, int m) noexcept {
 inline void AddScaled(double s, const double* x, int from, int to, double* y) noexcept {
   int k = from;
   for (; k % 4 != 0 && k < to; ++k) y[k] += s * x[k];
-  for (; k + 4 <= to; k += 4) StoreDouble4(LoadFour(y + k) + s * LoadFour(x + k), y + k);
+  for (; k + 4 <= to; k += 4) StoreDouble4(LoadDouble4(y + k) + s * LoadDouble4(x + k), y + k);
   for (; k < to; ++k) y[k] += s * x[k];
 }
 

@@ -85,7 +85,7 @@ class Tracker {
     SettleIdle();
   }
 
-  /// Double4 poses at once, if their predictions are good enough; otherwise nothing is done.
+  /// Four poses at once, if their predictions are good enough; otherwise nothing is done.
   bool AdvancePacket(const double* times) {
     if (study_.hand || model_.idle > 0 || history_ < 3) return false;
     const size_t first = motion_.size();

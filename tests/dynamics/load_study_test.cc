@@ -34,7 +34,7 @@ LoadStudy LongStudy(const std::string& example) {
   return study;
 }
 
-/// Double4 poses at once are the four poses: every wrench, power and rate.
+/// Four poses at once are the four poses: every wrench, power and rate.
 TEST(PacketOfPoses, IsEachPoseOfItsOwn) {
   constexpr double kRounding = 1e-12;  // of the largest load: the two round differently
   for (const DrivenExample& example : DrivenExamples()) {

@@ -6,14 +6,14 @@
 
 namespace vmech {
 
-/// Can a packet of poses be evaluated at once? Not where the hand, idle freedoms or friction under
+/// Can four poses be evaluated at once? Not where the hand, idle freedoms or friction under
 /// load ask for dense systems or iterations of each pose's own.
 bool RunsInLanes(const LoadModel& model);
 
 /// Velocities, accelerations, drive forces and the wrench of every joint at the closed poses
 /// `pose`, `pose` + 1, ... (as many as T has lanes), from scratch: the same input gives the same
 /// bits. Returns false if one of them is a dead centre, where the drive does not determine the
-/// motion, or if one of a packet is a pose at rest, whose friction is found pose by pose; what ws
+/// motion, or if one of four is a pose at rest, whose friction is found pose by pose; what ws
 /// holds is then not to be used.
 template <typename T>
 [[nodiscard]] bool EvaluatePoseLoads(const LoadModel& model, const Motion& motion, size_t pose,
