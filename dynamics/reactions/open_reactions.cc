@@ -82,24 +82,27 @@ OpenReactions::OpenReactions(const KinematicTree& tree, const CoordinatePartitio
 OpenReactions::Rows OpenReactions::TakeTurn(const Rows& handed, const Rows& own, size_t loop) {
   Turn turn;
   turn.handed = handed.A.rows();
-  turn.R.slots = Union(handed.slots, own.slots);
-  const auto goes_on =
-      std::stable_partition(turn.R.slots.begin(), turn.R.slots.end(),
-                            [&](int slot) { return last_loop_[slot] <= static_cast<int>(loop); });
-  MatrixXd A = MatrixXd::Zero(handed.A.rows() + own.A.rows(), std::ssize(turn.R.slots));
+  std::vector<int> slots = Union(handed.slots, own.slots);
+  const auto goes_on = std::stable_partition(slots.begin(), slots.end(), [&](int slot) {
+    return last_loop_[slot] <= static_cast<int>(loop);
+  });
+  MatrixXd A = MatrixXd::Zero(handed.A.rows() + own.A.rows(), std::ssize(slots));
   for (Index k = 0; k < handed.A.cols(); ++k) {
-    A.col(Find(turn.R.slots, handed.slots[k])).head(handed.A.rows()) = handed.A.col(k);
+    A.col(Find(slots, handed.slots[k])).head(handed.A.rows()) = handed.A.col(k);
   }
   for (Index k = 0; k < own.A.cols(); ++k) {
-    A.col(Find(turn.R.slots, own.slots[k])).tail(own.A.rows()) = own.A.col(k);
+    A.col(Find(slots, own.slots[k])).tail(own.A.rows()) = own.A.col(k);
   }
   const MatrixXd R = FactorQR(A, &turn.Q);
-  const Index ending = goes_on - turn.R.slots.begin();
+  const Index ending = goes_on - slots.begin();
   const Index eliminated = std::min(ending, R.rows());
   has_full_rank_ = has_full_rank_ && eliminated == ending;
+  turn.eliminated.assign(slots.begin(), slots.begin() + eliminated);
+  turn.later.assign(slots.begin() + eliminated, slots.end());
+  turn.R = R.topLeftCorner(eliminated, eliminated);
+  turn.R_later = R.topRightCorner(eliminated, std::ssize(turn.later));
   turn.handed_on = R.rows() - eliminated;
-  turn.R.A = R.topRows(eliminated);
-  Rows rest{{goes_on, turn.R.slots.end()}, {}};
+  Rows rest{{goes_on, slots.end()}, {}};
   rest.A = R.bottomRightCorner(turn.handed_on, std::ssize(rest.slots));
   turns_.push_back(std::move(turn));
   return rest;
@@ -110,12 +113,12 @@ OpenReactions::Rows OpenReactions::TakeTurn(const Rows& handed, const Rows& own,
 void OpenReactions::LookAhead() {
   for (size_t l = turns_.size(); l-- > 1;) {
     const Turn& turn = turns_[l];
-    const Index open = turn.Q.rows() - turn.R.A.rows() - turn.handed_on;
+    const Index open = turn.Q.rows() - turn.R.rows() - turn.handed_on;
     const MatrixXd from_handed = turn.Q.topRows(turn.handed).transpose();
     MatrixXd seen(open + turn.ahead.rows(), turn.handed);
     seen.topRows(open) = from_handed.bottomRows(open);
     seen.bottomRows(turn.ahead.rows()) =
-        turn.ahead * from_handed.middleRows(turn.R.A.rows(), turn.handed_on);
+        turn.ahead * from_handed.middleRows(turn.R.rows(), turn.handed_on);
     turns_[l - 1].ahead = FactorQR(seen);
   }
 }
@@ -133,43 +136,37 @@ VectorXd OpenReactions::LargestOpen(const std::vector<Block>& blocks) const {
       y += turn.Q.bottomRows(turn.Q.rows() - turn.handed).transpose() * block->T.transpose();
       ++block;
     }
-    const Index settled = turn.R.A.rows() + turn.handed_on;
+    const Index settled = turn.R.rows() + turn.handed_on;
     squared += y.bottomRows(y.rows() - settled).colwise().squaredNorm().transpose();
-    handed = y.middleRows(turn.R.A.rows(), turn.handed_on);
+    handed = y.middleRows(turn.R.rows(), turn.handed_on);
   }
   const MatrixXd later = turns_[blocks.back().loop].ahead * handed;
   return (squared + later.colwise().squaredNorm().transpose()).cwiseSqrt();
 }
 
-/// R' y = b, in place.
+/// R' y = b.
 VectorXd OpenReactions::SolveTransposed(VectorXd b) const {
-  VectorXd y = VectorXd::Zero(b.size());
   for (const Turn& turn : turns_) {
-    const Index n = turn.R.A.rows();
-    const std::vector<int> first(turn.R.slots.begin(), turn.R.slots.begin() + n);
-    const std::vector<int> rest(turn.R.slots.begin() + n, turn.R.slots.end());
-    const VectorXd part =
-        turn.R.A.leftCols(n).triangularView<Eigen::Upper>().transpose().solve(VectorXd(b(first)));
-    y(first) = part;
-    b(rest) -= turn.R.A.rightCols(std::ssize(rest)).transpose() * part;
+    const VectorXd right = b(turn.eliminated);
+    const VectorXd y = turn.R.triangularView<Eigen::Upper>().transpose().solve(right);
+    b(turn.eliminated) = y;
+    b(turn.later) -= turn.R_later.transpose() * y;
   }
-  return y;
+  return b;
 }
 
 /// R x = b.
 VectorXd OpenReactions::Solve(VectorXd b) const {
   for (auto turn = turns_.rbegin(); turn != turns_.rend(); ++turn) {
-    const Index n = turn->R.A.rows();
-    const std::vector<int> first(turn->R.slots.begin(), turn->R.slots.begin() + n);
-    const std::vector<int> rest(turn->R.slots.begin() + n, turn->R.slots.end());
-    const VectorXd left = b(first) - turn->R.A.rightCols(std::ssize(rest)) * b(rest);
-    const VectorXd part = turn->R.A.leftCols(n).triangularView<Eigen::Upper>().solve(left);
-    b(first) = part;
+    const VectorXd right = b(turn->eliminated) - turn->R_later * b(turn->later);
+    const VectorXd x = turn->R.triangularView<Eigen::Upper>().solve(right);
+    b(turn->eliminated) = x;
   }
   return b;
 }
 
 double OpenReactions::LeastSingularValue() const {
+  if (last_loop_.empty()) return 1;
   if (!has_full_rank_) return 0;
   constexpr int kSteps = 3;
   constexpr double kGolden = 0.6180339887498949;

@@ -31,7 +31,8 @@ class OpenReactions {
   VectorXd LargestOpen(const std::vector<Block>& blocks) const;
 
   /// The least singular value of C_u, by a few steps of inverse iteration, which are above it and
-  /// the closer the smaller it is; over a bound of the largest, sqrt(|C_u|_1 |C_u|_inf).
+  /// the closer the smaller it is; over a bound of the largest, sqrt(|C_u|_1 |C_u|_inf). 1 without dependent
+  /// velocities.
   double LeastSingularValue() const;
 
  private:
@@ -43,8 +44,9 @@ class OpenReactions {
   /// A loop's turn: Q' [rows handed to it; its own] = [R; rows handed on; open rows].
   struct Turn {
     Eigen::Index handed = 0;
-    Rows R;      ///< its first columns are those of the velocities eliminated, as many as rows
-    MatrixXd Q;  ///< [rows, rows]
+    std::vector<int> eliminated, later;  ///< slots of the velocities that end here, and of others
+    MatrixXd R, R_later;                 ///< [eliminated, eliminated] and [eliminated, later]
+    MatrixXd Q;                          ///< [rows, rows]
     Eigen::Index handed_on = 0;
     /// What rows handed on load with values x of the open rows of all later turns is |ahead x|.
     MatrixXd ahead;

@@ -18,13 +18,15 @@ constexpr double kRounding = 1e-12;  // of matrices of the order of 1
 
 /// The dense decomposition of the same matrix, and what it says.
 struct Dense {
-  MatrixXd Z;             ///< [rows, open]
-  double least, largest;  ///< singular values
-  double bound_of_largest;
+  MatrixXd Z;                     ///< [rows, open]
+  double least = 1, largest = 1;  ///< singular values
+  double bound_of_largest = 1;
 
   Dense(const LoadModel& model, const VectorXd& q) {
     const MatrixXd C_u =
         DimensionlessLoopJacobian(model.tree, q)(Eigen::all, model.partition.dependent);
+    Z = MatrixXd::Identity(C_u.rows(), C_u.rows());
+    if (C_u.cols() == 0) return;
     const Eigen::JacobiSVD<MatrixXd> svd(C_u, Eigen::ComputeFullU);
     Z = svd.matrixU().rightCols(C_u.rows() - C_u.cols());
     least = svd.singularValues().minCoeff();
