@@ -81,7 +81,7 @@ class Ledger {
   }
 
   /// A solver that took its process down has failed; the others go on.
-  std::optional<std::string> Lost(size_t index, const std::string& reason) {
+  std::optional<std::string> RecordLost(size_t index, const std::string& reason) {
     Task& task = open_[index];
     if (task.solvers.empty()) return {};
     Result result;
@@ -143,7 +143,7 @@ std::vector<Result> RunComparison(const Suite& suite, const std::vector<SolverEn
     progress(ledger.done());
   };
   coordinator.lost = [&](size_t task, const std::string& reason) {
-    return ledger.Lost(task, reason);
+    return ledger.RecordLost(task, reason);
   };
   spread(ledger.Tasks(), coordinator);
   return std::move(ledger).Sorted();

@@ -38,7 +38,7 @@ HapticSubject ReadHeldStudy(const std::filesystem::path& file) {
 }
 
 /// The part of a word behind the mark of its kind: "FILE" of "replay:FILE".
-std::optional<std::string> Behind(const std::string& word, std::string_view mark) {
+std::optional<std::string> AfterMark(const std::string& word, std::string_view mark) {
   if (word.rfind(mark, 0) != 0) return std::nullopt;
   return word.substr(mark.size());
 }
@@ -163,12 +163,12 @@ std::unique_ptr<Master> MakeMaster(const MasterRequest& request) {
   const std::string& word = request.word;
   if (word == "simulated") return MakeSimulated(request);
   if (word == "spacenav") return std::make_unique<SpacenavMaster>();
-  if (const auto file = Behind(word, "replay:")) {
+  if (const auto file = AfterMark(word, "replay:")) {
     return std::make_unique<ReplayMaster>(
         UsingFile("--master", [&] { return ReadRecording(*file); }));
   }
-  if (const auto address = Behind(word, "udp:")) return MakeUdp(*address);
-  if (const auto library = Behind(word, "plugin:")) {
+  if (const auto address = AfterMark(word, "udp:")) return MakeUdp(*address);
+  if (const auto library = AfterMark(word, "plugin:")) {
     const std::size_t colon = library->find(':');
     const std::string parameters = colon == std::string::npos ? "" : library->substr(colon + 1);
     return UsingFile("--master", [&] {

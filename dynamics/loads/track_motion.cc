@@ -135,7 +135,7 @@ class Tracker {
   /// Moves all drives to the target, in halves where one step is not safe.
   void MoveTo(const std::vector<double>& target, double time, size_t pose, int depth) {
     if (TryStep(target)) return;
-    if (depth >= kDeepestHalving) Lost(time, pose);
+    if (depth >= kDeepestHalving) ThrowCannotFollow(time, pose);
     std::vector<double> middle(target.size());
     for (size_t k = 0; k < target.size(); ++k) middle[k] = 0.5 * (position_[k] + target[k]);
     history_ = 0;
@@ -265,7 +265,7 @@ class Tracker {
     const Summary summary = Solve(*hand_, options, q_);
     q_ = summary.x;
     EvaluatePose(tree_, q_, &ws_);
-    if (!summary.converged()) Lost(time, pose);
+    if (!summary.converged()) ThrowCannotFollow(time, pose);
     SettleIdle();
     UnwrapCutPositions();
   }
@@ -332,7 +332,7 @@ class Tracker {
     return speed;
   }
 
-  [[noreturn]] void Lost(double time, size_t pose) const {
+  [[noreturn]] void ThrowCannotFollow(double time, size_t pose) const {
     throw std::runtime_error(fmt::format(
         "the motion cannot be followed to pose {} (t = {:.6g} s): {} the mechanism is at a dead "
         "centre or at the edge of its reach, and its loops stay open by {:.3g}. {}",
