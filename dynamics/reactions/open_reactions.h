@@ -31,8 +31,8 @@ class OpenReactions {
   VectorXd LargestOpen(const std::vector<Block>& blocks) const;
 
   /// The least singular value of C_u, by a few steps of inverse iteration, which are above it and
-  /// the closer the smaller it is; over a bound of the largest, sqrt(|C_u|_1 |C_u|_inf). 1 without dependent
-  /// velocities.
+  /// the closer the smaller it is; over a bound of the largest, sqrt(|C_u|_1 |C_u|_inf). It is 1
+  /// where no velocity is dependent.
   double LeastSingularValue() const;
 
  private:
