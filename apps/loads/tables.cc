@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <atomic>
 #include <functional>
+#include <iterator>
 #include <thread>
 
 #include "vmech/dynamics/loads/load_result.h"
@@ -25,9 +26,8 @@ class Row {
   void Add(double value) {
     if (!first_) text_.push_back(',');
     first_ = false;
-    char number[32];  // of which a double takes 24 at most
     // Without the sign of a zero, which says nothing.
-    text_.append(number, fmt::format_to(number, FMT_COMPILE("{}"), value == 0 ? 0.0 : value));
+    fmt::format_to(std::back_inserter(text_), FMT_COMPILE("{}"), value == 0 ? 0.0 : value);
   }
   template <typename Vector>
   void AddAll(const Vector& v) {
