@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "vmech/kinematics/loops/assembly.h"
+#include "vmech/kinematics/tree/forward_kinematics.h"
 #include "vmech/kinematics/tree/kinematic_tree.h"
 #include "vmech/mechanisms/files/reader.h"
 
