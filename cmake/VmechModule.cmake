@@ -1,7 +1,7 @@
 # Modules: libraries with an include root each, installed as components of the package `vmech`.
 
-# vmech_found_by(<how> <target>...): a program that uses the installed vmech finds these targets of a
-# package by the command <how>.
+# vmech_found_by(<how> <target>...): a program that uses the installed vmech finds these targets of
+# a package by the command <how>.
 function(vmech_found_by how)
   foreach(library ${ARGN})
     set_property(GLOBAL PROPERTY VMECH_FOUND_BY_${library} "${how}")
@@ -39,9 +39,9 @@ endfunction()
 # One folder, one library: the module `dynamics/bearings` becomes vmech_dynamics_bearings (alias
 # vmech::dynamics_bearings). A component `loads/load_study` is a header, a source or both, in the
 # module's folder or a folder below. Its header is included as
-# "vmech/<path>/loads/load_study.h", in this tree and from an installation; "vmech/<path>.h" includes
-# all that are installed. Each module has an include root of its own, made of forwarding headers: a
-# module can include only what it links to.
+# "vmech/<path>/loads/load_study.h", in this tree and from an installation; "vmech/<path>.h"
+# includes all that are installed. Each module has an include root of its own, made of forwarding
+# headers: a module can include only what it links to.
 # INTERNAL components have headers that are not installed: what is passed in them depends on the
 # instruction set that the library is compiled for. SOURCES are those that belong to no component.
 # Nothing of a LOCAL module is installed: it is part of a program.

@@ -42,4 +42,6 @@ endfunction()
 
 if(VMECH_PRECOMPILE)
   vmech_add_precompiled(library HEADERS <fmt/format.h> LIBS fmt::fmt vmech_kernel_settings)
+  vmech_add_precompiled(programs PROGRAMS HEADERS <CLI/CLI.hpp> <fmt/format.h>
+                        LIBS fmt::fmt CLI11::CLI11)
 endif()

@@ -2,10 +2,10 @@
 
 Usage: clang_tidy.py CLANG_TIDY BUILD_FOLDER
 
-Nine tenths of the time of a source go into the headers of Eigen and the standard library. So sources
-are looked at in batches, as one source that includes them all. Two that give a name of their own to
-different things are not put into one batch; a batch that is not clean is halved until it is, or one
-source is left.
+Nine tenths of the time of a source go into the headers of Eigen and the standard library. So
+sources are looked at in batches, as one source that includes them all. Two that give a name of
+their own to different things are not put into one batch; a batch that is not clean is halved until
+it is, or one source is left.
 
 A source that passed is not looked at again until it, a header of the project that it includes, its
 compile command, .clang-tidy or clang-tidy itself changes: BUILD_FOLDER/tidy holds one empty file,
@@ -54,7 +54,7 @@ class Source:
 
 
 def clang_flags(command):
-    """The options of a compile command, without compiler, source and output, as clang takes them."""
+    """The options of a compile command as clang takes them, without source and output."""
     words = iter(shlex.split(command))
     flags = []
     for word in words:

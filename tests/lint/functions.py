@@ -3,7 +3,8 @@
 import re
 
 # What is not code, with as many lines as before; a character or string keeps its quotes.
-NOT_CODE = re.compile(r'//[^\n]*|/\*.*?\*/|R"\((?:.*?)\)"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'|'
+NOT_CODE = re.compile(r'//[^\n]*|/\*.*?\*/|R"\(.*?\)"|"(?:\\.|[^"\\\n])*"'
+                      r"|'(?:\\.|[^'\\\n])'|"
                       r"^[ \t]*#(?:[^\n]*\\\n)*[^\n]*", re.MULTILINE | re.DOTALL)
 SCOPE = re.compile(r"\b(namespace|struct|class|union|extern)\b[^()=]*$")
 # Parentheses and whatever may stand between them and a body.

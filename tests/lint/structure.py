@@ -2,9 +2,9 @@
 
 - No component includes another that includes it back, directly or not. A component is a header, a
   source or both of one name.
-- A folder holds at most MAX_COMPONENTS components, and a README.md.
-- Functions are short: MEDIAN_LINES at the median, and at most LONG_SHARE are longer than LONG_LINES,
-  counted from the first line of the signature to the closing brace.
+- A folder holds at most MAX_COMPONENTS components; that of a module holds a README.md.
+- Functions are short: MEDIAN_LINES at the median, and at most LONG_SHARE of them are longer than
+  LONG_LINES, counted from the first line of the signature to the closing brace.
 """
 
 import re
@@ -35,7 +35,7 @@ def includes_of(files):
 
 
 def circle(includes):
-    """A list of components, each including the next and the last the first; empty if there is none."""
+    """Components, each including the next and the last the first; none if there is no circle."""
     left = dict(includes)
     while ends := [name for name, found in left.items() if not found & left.keys()]:
         for name in ends:
@@ -53,8 +53,8 @@ def folder_problems(components):
     for folder, inside in sorted(folders.items()):
         if len(inside) > MAX_COMPONENTS:
             yield f"{relative(folder)}: {len(inside)} components, at most {MAX_COMPONENTS}"
-        if not (folder / "README.md").is_file():
-            yield f"{relative(folder)}: a folder of sources without a README.md"
+        if (folder / "CMakeLists.txt").is_file() and not (folder / "README.md").is_file():
+            yield f"{relative(folder)}: a module without a README.md"
 
 
 def length_problems(functions):
@@ -66,7 +66,7 @@ def length_problems(functions):
     if median > MEDIAN_LINES:
         yield f"functions have {median} lines at the median, at most {MEDIAN_LINES}"
     if share > LONG_SHARE:
-        yield f"{share:.1%} of the functions have more than {LONG_LINES} lines, at most {LONG_SHARE:.0%}:"
+        yield f"{share:.1%} of functions are above {LONG_LINES} lines, at most {LONG_SHARE:.0%}:"
         yield from (f"  {relative(path)}:{line}: {lines} lines" for path, line, lines in too_long)
 
 
