@@ -152,7 +152,8 @@ void InverseKinematics::EvaluateLoops(VectorXd* c, MatrixXd* C) {
     const double* scale = row_scale_.data() + loop.row;
     for (int k = 0; c && k < loop.rows; ++k) (*c)[loop.row + k] = scale[k] * s.e2[k];
     if (!C) continue;
-    FindLoopWrenches(loop, Rotate(s.F, Matrix3d(LoopRotationJacobian(loop, s).transpose()), s.F.p), &s);
+    FindLoopWrenches(loop, Rotate(s.F, Matrix3d(LoopRotationJacobian(loop, s).transpose()), s.F.p),
+                     &s);
     for (const LoopColumn& column : loop.columns) {
       const Screw S = -column.sign * ws_.S[column.v];
       for (int k = 0; k < loop.rows; ++k) {

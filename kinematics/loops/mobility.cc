@@ -6,8 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "vmech/base/screw_algebra.h"
 #include "vmech/base/linear_algebra/linear_algebra.h"
+#include "vmech/base/screw_algebra.h"
 #include "vmech/kinematics/loops/assembly.h"
 #include "vmech/kinematics/loops/closure.h"
 #include "vmech/kinematics/loops/dimensionless_loops.h"

@@ -41,8 +41,8 @@ void GraspJacobian(const KinematicTree& tree, const TreeWorkspace<double>& ws, i
 void GraspJacobian(const KinematicTree& tree, const TreeWorkspace<double>& ws, int node,
                    const Frame& Q, std::vector<Screw>* J) noexcept;
 
-/// Twist and acceleration [linear; angular] about the origin of such a frame. Need V; V and A, which
-/// for the ground is that of SetGravity.
+/// Twist and acceleration [linear; angular] about the origin of such a frame. Need V; V and A,
+/// which for the ground is that of SetGravity.
 Vector6d GraspTwist(const TreeWorkspace<double>& ws, int node, const Posed& X_BQ);
 Vector6d GraspAcceleration(const TreeWorkspace<double>& ws, int node, const Posed& X_BQ);
 

@@ -5,7 +5,7 @@
 
 namespace vmech {
 
-constexpr int kMaxNesting = 64;      ///< levels of lists and maps in a file
+constexpr int kMaxNesting = 64;  ///< levels of lists and maps in a file
 
 enum class NodeKind { kAbsent, kNull, kScalar, kList, kMap };
 

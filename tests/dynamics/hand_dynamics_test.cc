@@ -10,7 +10,6 @@
 #include "vmech/dynamics/loads/run_load_study.h"
 #include "vmech/kinematics/loops/assembly.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
-#include "vmech/kinematics/tree/forward_kinematics.h"
 
 namespace vmech {
 namespace {

@@ -14,7 +14,6 @@
 #include "vmech/dynamics/loads/pose/store_pose_loads.h"
 #include "vmech/dynamics/loads/prepare_study.h"
 #include "vmech/dynamics/loads/run_load_study.h"
-#include "vmech/dynamics/loads/pose/pose_loads.h"
 #include "vmech/dynamics/loads/track_motion.h"
 
 namespace vmech {

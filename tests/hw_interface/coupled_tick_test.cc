@@ -17,7 +17,6 @@
 #include "vmech/hw_interface/rendering/coupling_choice.h"
 #include "vmech/kinematics/loops/loops.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
-#include "vmech/kinematics/tree/forward_kinematics.h"
 
 namespace vmech {
 namespace {

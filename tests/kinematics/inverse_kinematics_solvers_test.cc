@@ -11,7 +11,6 @@
 #include "vmech/kinematics/inverse/inverse_kinematics.h"
 #include "vmech/kinematics/loops/loops.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
-#include "vmech/kinematics/tree/forward_kinematics.h"
 #include "vmech/solvers/augmented_lagrangian.h"
 #include "vmech/solvers/backend.h"
 #include "vmech/solvers/nullspace.h"

@@ -4,9 +4,9 @@
 
 A fault is a small slip in one line of one source: a sign, a comparison, a factor, an index. Which
 ones is drawn by SEED, so that a run can be repeated. For every fault the module's test programs are
-built and run in a copy of the project, BUILD/mutation below the working folder, with `ninja` and the
-preset `dev`. Faults that do not compile, or that the compiler cannot tell from the original (the
-object file is the same), are drawn again.
+built and run in a copy of the project, build/mutation, with `ninja` and the preset `dev`. Faults
+that do not compile, or that the compiler cannot tell from the original (the object file is the
+same), are drawn again.
 
 The answer is a line per fault, "caught by dynamics_test", "caught: does not end" or "NOT CAUGHT
 dynamics/...:63: '+' for '-'", and the share that was caught. Exit status 1 if that is below 95 %.
