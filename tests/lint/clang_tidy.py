@@ -35,7 +35,10 @@ GCC_ALONE = re.compile(r"-m(move|store)-max=\d+|-fpch-preprocess|-Winvalid-pch")
 # margin.
 HIDDEN = re.compile(r"^namespace \{$(.*?)^\}  // namespace$", re.MULTILINE | re.DOTALL)
 AT_MARGIN = re.compile(r"^(?!//|#|\}|template)\S.*$", re.MULTILINE)
-DEFINED = re.compile(r"\b(?:(?:struct|class|using) (\w+)|(\w+)(?:\[.*\])?(?:\(| = |\{|;))")
+DEFINED = re.compile(r"^(?:struct|class|enum class) (\w+)"
+                     r"|[\w>&*] ([A-Za-z]\w*)(?:\[.*\])?(?:\(| = |\{|;)"
+                     r"|, ([A-Za-z]\w*) = ", re.MULTILINE)
+ALIAS = re.compile(r"namespace|using")  # clash only if they differ
 MAIN = re.compile(r"^int (main)\(", re.MULTILINE)
 
 
@@ -49,8 +52,8 @@ class Source:
         """Names of what only this source sees, by which it may clash with others."""
         text = self.path.read_text()
         lines = AT_MARGIN.findall("".join(HIDDEN.findall(text)))
-        defined = DEFINED.findall("\n".join(lines))
-        return {first or second for first, second in defined} | set(MAIN.findall(text))
+        defined = DEFINED.findall("\n".join(line for line in lines if not ALIAS.match(line)))
+        return {name for names in defined for name in names if name} | set(MAIN.findall(text))
 
 
 def clang_flags(command):
