@@ -1,7 +1,7 @@
 // What a program does with the installed vmech: the loads of a pendulum, its weight in a hand, and
 // a session with a simulated device; each compared with what statics says. Then a problem of two
-// unknowns by every back end. Every class that needs arguments is made on the stack, on the heap and
-// in a vector.
+// unknowns by every back end. Every class that needs arguments is made on the stack, on the heap
+// and in a vector.
 
 #include <algorithm>
 #include <cmath>
