@@ -22,6 +22,8 @@ class GraspedMechanism {
 
   /// Takes q [nq].
   void Set(const VectorXd& q) noexcept;
+  /// The same from a workspace of the same tree, after ForwardKinematics and LoopErrors.
+  void Set(const TreeWorkspace<double>& at_q) noexcept;
   /// The first half of Set, nodes and loop errors, as needed between two steps of a closure.
   void SetLoops(const VectorXd& q) noexcept;
   /// The other half: grasp frame, Jacobians and inertias.
@@ -65,13 +67,15 @@ class GraspedMechanism {
   double WeightEnergy() const noexcept { return vmech::WeightEnergy(tree_, inertias_); }
 
  private:
+  void ScaleLoopErrors() noexcept;
+
   const KinematicTree& tree_;
   GraspFrame grasp_;
   VectorXd row_scale_;
   TreeWorkspace<double> ws_;
   TreeInertias<double> inertias_;
   std::vector<JointState<double>> joints_;
-  Frame G_;                // about the reference point
+  Frame G_;               // about the reference point
   std::vector<Screw> J_;  // columns
   MatrixXd C_;
   VectorXd e2_;

@@ -8,8 +8,8 @@
 #include <random>
 #include <stdexcept>
 
-#include "vmech/base/screw_algebra.h"
 #include "vmech/base/linear_algebra/linear_algebra.h"
+#include "vmech/base/screw_algebra.h"
 #include "vmech/kinematics/loops/dimensionless_loops.h"
 #include "vmech/kinematics/loops/loops.h"
 #include "vmech/kinematics/loops/mobility.h"
