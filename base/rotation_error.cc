@@ -47,6 +47,11 @@ Vector3d Logarithm(const Matrix3d& R) {
   return 2 * std::atan2(sine, turn.w()) / sine * turn.vec();
 }
 
+/// Twice that of R_WH R_WG' = sum h g'.
+Double4 TwiceSkewPart(const Frame& G, const Frame& H) {
+  return Cross(G.x, H.x) + Cross(G.y, H.y) + Cross(G.z, H.z);
+}
+
 /// By a call of its own, which leaves the registers to the short ones.
 [[gnu::noinline]] Double4 LongTurn(const Frame& G, const Frame& H) {
   return Double4Of(Logarithm(RotationOf(H) * RotationOf(G).transpose()));
@@ -71,8 +76,14 @@ JacobianCoefficient CoefficientAt(double theta2) {
 }
 
 Matrix3d InverseRightJacobian(const Vector3d& e) {
-  const Matrix3d S = CrossMatrix<double>(e);
-  return Matrix3d::Identity() + 0.5 * S + CoefficientAt(e.squaredNorm()).k * (S * S);
+  // [e]^2 = e e' - |e|^2
+  const double e2 = e.squaredNorm(), k = CoefficientAt(e2).k, diagonal = 1 - k * e2;
+  const Vector3d h = 0.5 * e, ke = k * e;
+  Matrix3d J;
+  J << diagonal + ke[0] * e[0], ke[0] * e[1] - h[2], ke[0] * e[2] + h[1],  //
+      ke[1] * e[0] + h[2], diagonal + ke[1] * e[1], ke[1] * e[2] - h[0],   //
+      ke[2] * e[0] - h[1], ke[2] * e[1] + h[0], diagonal + ke[2] * e[2];
+  return J;
 }
 
 // With a = Jr^-1 u, along eta = t u: e' = -a and g'e'' = g' (dJr^-1/de . a) u =: a'B u.
@@ -110,10 +121,14 @@ Screw HandError(const Frame& G, const Frame& H) noexcept {
   const Double4 traces = G.x * H.x + G.y * H.y + G.z * H.z;
   const double y = 0.25 * (3 - (traces[0] + traces[1] + traces[2]));
   if (y <= kShortTurn) {
-    const Double4 skew = Cross(G.x, H.x) + Cross(G.y, H.y) + Cross(G.z, H.z);
-    return {H.p - G.p, 0.5 * AngleOverSine(y) * skew};
+    return {H.p - G.p, 0.5 * AngleOverSine(y) * TwiceSkewPart(G, H)};
   }
   return {H.p - G.p, LongTurn(G, H)};
+}
+
+Screw HandError(RotationError kind, const Frame& G, const Frame& H) noexcept {
+  if (kind == RotationError::kLogarithm) return HandError(G, H);
+  return {H.p - G.p, 0.5 * TwiceSkewPart(G, H)};
 }
 
 Posed Displaced(const Posed& X, const Vector6d& way) noexcept {
@@ -143,6 +158,12 @@ Vector3d RotationErrorOf(RotationError kind, const Matrix3d& R_E) {
 Matrix3d RotationErrorJacobian(RotationError kind, const Matrix3d& R_E, const Vector3d& e) {
   if (kind == RotationError::kLogarithm) return -InverseRightJacobian(e);
   return 0.5 * (R_E.transpose() - R_E.trace() * Matrix3d::Identity());
+}
+
+Matrix3d RotationErrorJacobian(RotationError kind, const Frame& G, const Frame& H,
+                               const Vector3d& e) noexcept {
+  if (kind == RotationError::kLogarithm) return -InverseRightJacobian(e);
+  return RotationErrorJacobian(kind, RotationOf(H) * RotationOf(G).transpose(), e);
 }
 
 Matrix3d RotationErrorCurvature(RotationError kind, const Matrix3d& R_E, const Vector3d& e,

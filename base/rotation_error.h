@@ -17,6 +17,8 @@ enum class RotationError {
 /// e1 [6; m, rad]: displacement and logarithm of the rotation that lead from G to H, world axes.
 Vector6d HandError(const Posed& X_WG, const Posed& X_WH);
 Screw HandError(const Frame& X_WG, const Frame& X_WH) noexcept;
+/// With the rotation as `kind` has it.
+Screw HandError(RotationError kind, const Frame& X_WG, const Frame& X_WH) noexcept;
 
 /// Its inverse: the pose to which `way` [dp; dr] leads from X, HandError(X, Displaced(X, way)) =
 /// way for turns below half a turn.
@@ -33,6 +35,9 @@ Vector3d RotationErrorOf(RotationError kind, const Matrix3d& R_E);
 /// R_E becomes R_E exp(-[eta]). A = -1 where e = 0. kLogarithm: A = -Jr(e)^-1, the inverse right
 /// Jacobian of SO(3) [Sola, Deray & Atchuthan 2018, eq. 144].
 Matrix3d RotationErrorJacobian(RotationError kind, const Matrix3d& R_E, const Vector3d& e);
+/// The same for R_E = R_WH R_WG', which the logarithm does not need.
+Matrix3d RotationErrorJacobian(RotationError kind, const Frame& X_WG, const Frame& X_WH,
+                               const Vector3d& e) noexcept;
 
 /// sum_i g_i d2e_i/deta2, symmetric.
 Matrix3d RotationErrorCurvature(RotationError kind, const Matrix3d& R_E, const Vector3d& e,

@@ -7,11 +7,14 @@
 namespace vmech {
 namespace {
 
-template <int kSize>
+// The rows of residuals and constraints as constants too, where they are those of a rigid grasp and
+// of one loop with a pin.
+template <int kSize, int kRows, int kClosures>
 void FormKernel(const Linearization& at_x, double weight, const double* forces,
                 NormalEquations* equations) noexcept {
   const int n = kSize > 0 ? kSize : equations->size();
-  const int rows = static_cast<int>(at_x.r.size()), closures = static_cast<int>(at_x.c.size());
+  const int rows = kRows > 0 ? kRows : static_cast<int>(at_x.r.size());
+  const int closures = kClosures > 0 ? kClosures : static_cast<int>(at_x.c.size());
   const double *J_j = at_x.J.data(), *C_j = at_x.C.data();
   const double* const r = at_x.r.data();
   double* H_j = equations->H.data();
@@ -28,13 +31,14 @@ void FormKernel(const Linearization& at_x, double weight, const double* forces,
 }  // namespace
 
 struct NormalEquations::Kernels {
+  void (*form_pinned)(const Linearization&, double, const double*, NormalEquations*) noexcept;
   void (*form)(const Linearization&, double, const double*, NormalEquations*) noexcept;
   bool (*factor)(int, double*) noexcept;
   void (*solve)(const double*, int, double*) noexcept;
 
   template <int kSize>
   static constexpr Kernels Of() {
-    return {FormKernel<kSize>, FactorLdlt<kSize>, SolveLdlt<kSize>};
+    return {FormKernel<kSize, 6, 5>, FormKernel<kSize, 0, 0>, FactorLdlt<kSize>, SolveLdlt<kSize>};
   }
   static const Kernels* ForSize(int size);
 };
@@ -56,7 +60,8 @@ NormalEquations::NormalEquations(int unknowns)
 
 void NormalEquations::Form(const Linearization& at_x, double weight,
                            const VectorXd& forces) noexcept {
-  kernels_->form(at_x, weight, forces.data(), this);
+  const bool pinned = at_x.r.size() == 6 && at_x.c.size() == 5;
+  (pinned ? kernels_->form_pinned : kernels_->form)(at_x, weight, forces.data(), this);
 }
 
 bool NormalEquations::Factor(const VectorXd& damping) noexcept {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vmech/base/linear_algebra/small_ldlt.h"
+
 namespace vmech {
 namespace {
 
@@ -99,6 +101,38 @@ bool WeightedStep::Compute(const ConstrainedLeastSquares& problem, const VectorX
   if (!equations_.Factor(damping_)) return false;
   for (int j = 0; j < n; ++j) dx[j] = -equations_.g[j];
   equations_.Solve(&dx);
+  Clip(problem, x, max_step);
+  return std::isfinite(dx.sum());
+}
+
+bool WeightedStep::ComputeChord(ConstrainedLeastSquares& problem, const VectorXd& x, double lambda,
+                                const VectorXd& mu, double max_step) noexcept {
+  problem.Evaluate(x, &at_trial_.r, nullptr, &at_trial_.c, nullptr);
+  FindChordStep(lambda, mu);
+  dx.swap(chord_dx_);
+  at_x.r.swap(at_trial_.r);
+  at_x.c.swap(at_trial_.c);
+  Clip(problem, x, max_step);
+  return std::isfinite(dx.sum());
+}
+
+// Multipliers for the step alone: c + C dx shrinks from one solve to the next.
+bool WeightedStep::ComputeClosure(const ConstrainedLeastSquares& problem, const VectorXd& x,
+                                  double lambda, const VectorXd& c, double max_step) noexcept {
+  constexpr int kSolves = 2;
+  const int closures = static_cast<int>(c.size()), n = equations_.size();
+  std::copy_n(c.data(), closures, at_x.c.data());
+  std::copy_n(c.data(), closures, c_model_.data());
+  std::fill_n(dx.data(), n, 0.0);
+  for (int solve = 0; solve < kSolves; ++solve) {
+    const double* C_j = at_x.C.data();
+    for (int j = 0; j < n; ++j, C_j += closures) {
+      chord_dx_[j] = -lambda * lambda * Dot(C_j, c_model_.data(), closures);
+    }
+    equations_.Solve(&chord_dx_);
+    for (int j = 0; j < n; ++j) dx[j] += chord_dx_[j];
+    if (solve + 1 < kSolves) PredictConstraints();
+  }
   Clip(problem, x, max_step);
   return std::isfinite(dx.sum());
 }

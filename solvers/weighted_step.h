@@ -28,10 +28,23 @@ class WeightedStep {
   [[nodiscard]] bool Linearize(ConstrainedLeastSquares& problem, const VectorXd& x, double lambda,
                                const VectorXd& mu) noexcept;
 
+  /// H and g of at_x as it stands, which is the problem at x.
+  [[nodiscard]] bool FormEquations(ConstrainedLeastSquares& problem, const VectorXd& x,
+                                   double lambda, const VectorXd& mu) noexcept;
+
   /// dx from H and g, clipped to the bounds and to max |dx_i| <= max_step. False if H + damping is
   /// not positive definite.
   [[nodiscard]] bool Compute(const ConstrainedLeastSquares& problem, const VectorXd& x,
                              double damping, double max_step) noexcept;
+
+  // Chord steps go from another x, near by, with the derivatives and the factors of the last
+  // Compute(); r and c of at_x become those there. False if dx is not finite.
+  /// dx of r and c there, clipped.
+  [[nodiscard]] bool ComputeChord(ConstrainedLeastSquares& problem, const VectorXd& x,
+                                  double lambda, const VectorXd& mu, double max_step) noexcept;
+  /// The step to C dx = -c that changes r least, clipped.
+  [[nodiscard]] bool ComputeClosure(const ConstrainedLeastSquares& problem, const VectorXd& x,
+                                    double lambda, const VectorXd& c, double max_step) noexcept;
 
   /// c + C dx: the constraint error that the linear model expects after the step.
   const VectorXd& PredictConstraints() noexcept;
@@ -57,8 +70,6 @@ class WeightedStep {
  private:
   static double Phi(const VectorXd& r, const VectorXd& c, double lambda,
                     const VectorXd& mu) noexcept;
-  [[nodiscard]] bool FormEquations(ConstrainedLeastSquares& problem, const VectorXd& x,
-                                   double lambda, const VectorXd& mu) noexcept;
   double GradientError() const noexcept;
   double TryStep(ConstrainedLeastSquares& problem, double lambda, const VectorXd& mu,
                  double max_step, VectorXd* x) noexcept;

@@ -31,9 +31,21 @@ void GraspedMechanism::Set(const VectorXd& q) noexcept {
   SetJacobians();
 }
 
+void GraspedMechanism::Set(const TreeWorkspace<double>& at_q) noexcept {
+  for (size_t i = 0; i < ws_.nodes.size(); ++i) ws_.nodes[i].X = at_q.nodes[i].X;
+  std::copy(at_q.S.begin(), at_q.S.end(), ws_.S.begin());
+  std::copy(at_q.loops.begin(), at_q.loops.end(), ws_.loops.begin());
+  ScaleLoopErrors();
+  SetJacobians();
+}
+
 void GraspedMechanism::SetLoops(const VectorXd& q) noexcept {
   ForwardKinematics(tree_, q.data(), &ws_);
   LoopErrors(tree_, &ws_);
+  ScaleLoopErrors();
+}
+
+void GraspedMechanism::ScaleLoopErrors() noexcept {
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
     const Loop& loop = tree_.loops[l];
     const Vector6d& e2 = ws_.loops[l].e2;

@@ -22,6 +22,8 @@ class GraspedMechanism {
 
   /// Takes q [nq].
   void Set(const VectorXd& q) noexcept;
+  /// The same from a workspace of the same tree, after ForwardKinematics and LoopErrors.
+  void Set(const TreeWorkspace<double>& at_q) noexcept;
   /// The first half of Set, nodes and loop errors, as needed between two steps of a closure.
   void SetLoops(const VectorXd& q) noexcept;
   /// The other half: grasp frame, Jacobians and inertias.
@@ -65,6 +67,8 @@ class GraspedMechanism {
   double WeightEnergy() const noexcept { return vmech::WeightEnergy(tree_, inertias_); }
 
  private:
+  void ScaleLoopErrors() noexcept;
+
   const KinematicTree& tree_;
   GraspFrame grasp_;
   VectorXd row_scale_;

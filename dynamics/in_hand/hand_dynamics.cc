@@ -118,6 +118,12 @@ Posed HandDynamics::SetPose(const VectorXd& q) noexcept {
   return pose_.X_WG();
 }
 
+Posed HandDynamics::SetPose(const VectorXd& q, const TreeWorkspace<double>& at_q) noexcept {
+  q_ = q;
+  pose_.Set(at_q);
+  return pose_.X_WG();
+}
+
 bool HandDynamics::Factor() noexcept {
   pose_.ComputeWeightedJacobian(ScrewOf(root_K_), &rootKJ_);
   A_.setZero();

@@ -35,6 +35,8 @@ class HandDynamics {
 
   /// Takes the closed pose q [nq]; returns that of the grasp frame.
   Posed SetPose(const VectorXd& q) noexcept;
+  /// The same where a workspace of the tree is at q, with its loop errors.
+  Posed SetPose(const VectorXd& q, const TreeWorkspace<double>& at_q) noexcept;
   /// There, with the twist and acceleration of Go, world axes [linear; angular], as far as the
   /// loops allow them, of a mechanism with a share of its inertia, in [0, 1]: weight, springs and
   /// dampers are whole. False, and results undefined, if a value is not finite.

@@ -77,7 +77,8 @@ void MechanismTick::Reset() noexcept {
 
 TickOutput MechanismTick::Step(const TickInput& input, std::span<double> channels) noexcept {
   if (input.fresh) track_ = tracker_.Advance(input.X_WH);
-  X_WG_ = dynamics_.SetPose(tracker_.q());
+  const VectorXd& q = tracker_.q();
+  X_WG_ = dynamics_.SetPose(q, tracker_.kinematics().WorkspaceAt(q));
   const Vector6d e1 = HandError(X_WG_, input.X_WH);
   if (input.fresh) {
     motion_.Update(X_WG_, static_cast<int>(std::lround(input.elapsed / period_)));

@@ -9,6 +9,7 @@
 
 #include "vmech/base/check_range.h"
 #include "vmech/base/linear_algebra/signed_elimination.h"
+#include "vmech/base/linear_algebra/small_ldlt.h"
 #include "vmech/kinematics/inverse/configuration_distance.h"
 #include "vmech/kinematics/loops/unseen_motions.h"
 #include "vmech/kinematics/tree/validity.h"
@@ -31,6 +32,10 @@ constexpr double kReferenceNear = 1e-3;
 constexpr double kFloor = 1e-12;
 /// A step that is longer than this part of the one before calls for second derivatives.
 constexpr double kSlow = 0.02;
+/// After a step as long as this at most [rad or m], the next may take the same derivatives.
+constexpr double kShort = 1e-2;
+/// ..if it is shorter by this.
+constexpr double kContraction = 0.25;
 constexpr int kInverseIterations = 4;
 constexpr int kClosingSteps = 3;
 constexpr double kClosingWeight = 1e3;
@@ -108,7 +113,7 @@ HandTracker::HandTracker(const KinematicTree& tree, const GraspFrame& grasp, con
       trial_(q),
       good_multipliers_(VectorXd::Zero(tree.rows)),
       at_trial_(problem_.sizes()),
-      A_(MatrixXd::Zero(problem_.sizes().residuals + tree.rows, tree.nv)),
+      A_(MatrixXd::Zero(PaddedSize(problem_.sizes().residuals + tree.rows), tree.nv)),
       product_(tree.nv, tree.nv),
       normal_(tree.nv),
       step_(tree.nv),
@@ -164,9 +169,12 @@ HandTracker::Progress HandTracker::TakeSteps() noexcept {
   double first_error = 0, last_step = 0;
   bool slow = false;
   for (int i = 0; i < options_.steps; ++i) {
-    if (!TakeStep(slow) && !(slow && TakeStep(false))) return Progress::kNone;
+    const bool chord = i > 0 && !slow && TakeChordStep(last_step);
+    if (!chord && !TakeStep(slow) && !(slow && TakeStep(false))) return Progress::kNone;
     const double size = workspace_.step.dx.lpNorm<Eigen::Infinity>();
-    if (size <= options_.step_tolerance) return Progress::kArrived;
+    const bool arrived = size <= options_.step_tolerance;
+    if (arrived || i + 1 == options_.steps) TakeClosureStep(size);
+    if (arrived) return Progress::kArrived;
     slow = slow || (i > 0 && size > kSlow * last_step);
     if (i == 0) first_error = workspace_.step.at_x.r.squaredNorm();
     last_step = size;
@@ -181,11 +189,47 @@ bool HandTracker::TakeStep(bool with_curvature) noexcept {
   step.ForgetScale();
   step.use_curvature = with_curvature;
   const double lambda = options_.weight;
-  if (!step.Linearize(problem_, trial_, lambda, workspace_.multipliers)) return false;
+  if (!Linearize()) return false;
   if (!step.Compute(problem_, trial_, kDamping, options_.max_move / options_.steps)) return false;
   workspace_.multipliers += lambda * lambda * step.PredictConstraints();
   problem_.Plus(trial_, step.dx, &trial_);
   return true;
+}
+
+/// The same with the derivatives and factors of the step before, where that was short and this one
+/// is shorter: their change along it is small against what Gauss-Newton leaves out.
+bool HandTracker::TakeChordStep(double last_step) noexcept {
+  if (last_step > kShort) return false;
+  WeightedStep& step = workspace_.step;
+  const double lambda = options_.weight;
+  const double max_step = options_.max_move / options_.steps;
+  if (!step.ComputeChord(problem_, trial_, lambda, workspace_.multipliers, max_step)) return false;
+  if (step.dx.lpNorm<Eigen::Infinity>() > kContraction * last_step) return false;
+  workspace_.multipliers += lambda * lambda * step.PredictConstraints();
+  problem_.Plus(trial_, step.dx, &trial_);
+  return true;
+}
+
+/// The loops are as the last target left them: the hand alone has moved.
+bool HandTracker::Linearize() noexcept {
+  WeightedStep& step = workspace_.step;
+  const VectorXd& mu = workspace_.multipliers;
+  if (!at_q_) return step.Linearize(problem_, trial_, options_.weight, mu);
+  at_q_ = false;
+  step.at_x.c.swap(at_trial_.c);
+  step.at_x.C.swap(at_trial_.C);
+  problem_.Evaluate(trial_, &step.at_x.r, &step.at_x.J, nullptr, nullptr);
+  return step.FormEquations(problem_, trial_, options_.weight, mu);
+}
+
+/// Takes back what the last step has opened, with the factors at hand.
+void HandTracker::TakeClosureStep(double last_step) noexcept {
+  WeightedStep& step = workspace_.step;
+  problem_.Evaluate(trial_, nullptr, nullptr, &at_trial_.c, nullptr);
+  if (IsClosed()) return;
+  if (step.ComputeClosure(problem_, trial_, options_.weight, at_trial_.c, last_step)) {
+    problem_.Plus(trial_, step.dx, &trial_);
+  }
 }
 
 /// From the last good pose with second derivatives and descent.
@@ -199,19 +243,20 @@ HandTracker::Progress HandTracker::Rescue() noexcept {
 
 /// The shortest way to closed loops; leaves at_trial_ there.
 void HandTracker::Close() noexcept {
-  for (int i = 0;; ++i) {
-    at_trial_.Evaluate(problem_, trial_);
-    if (i == kClosingSteps || IsClosed()) return;
+  problem_.Evaluate(trial_, nullptr, nullptr, &at_trial_.c, nullptr);
+  for (int i = 0; i < kClosingSteps && !IsClosed(); ++i) {
     closing_workspace_.multipliers.setZero();
-    if (!Step(closing_, closing_options_, &trial_, &closing_workspace_).ok) return;
+    if (!Step(closing_, closing_options_, &trial_, &closing_workspace_).ok) break;
+    problem_.Evaluate(trial_, nullptr, nullptr, &at_trial_.c, nullptr);
   }
+  problem_.Evaluate(trial_, &at_trial_.r, &at_trial_.J, nullptr, &at_trial_.C);
 }
 
 /// Whether trial_ may follow the last good pose: kFollowed, or why not.
 TrackStatus HandTracker::Judge() noexcept {
   Close();
-  if (!at_trial_.AllFinite()) return TrackStatus::kLost;
   StackJacobians();
+  if (!std::isfinite(A_.sum() + at_trial_.r.sum() + at_trial_.c.sum())) return TrackStatus::kLost;
   determinant_ = BranchDeterminant();
   if (std::abs(determinant_) < kDeadZone) return TrackStatus::kDeadCentre;
   if (determinant_ < 0) return TrackStatus::kJump;
@@ -223,8 +268,12 @@ bool HandTracker::IsClosed() const noexcept {
 }
 
 void HandTracker::StackJacobians() noexcept {
-  A_.topRows(at_trial_.J.rows()) = at_trial_.J;
-  A_.bottomRows(at_trial_.C.rows()) = at_trial_.C;
+  const Eigen::Index residuals = at_trial_.J.rows(), constraints = at_trial_.C.rows();
+  for (Eigen::Index j = 0; j < A_.cols(); ++j) {
+    double* A_j = A_.data() + j * A_.rows();
+    std::copy_n(at_trial_.J.data() + j * residuals, residuals, A_j);
+    std::copy_n(at_trial_.C.data() + j * constraints, constraints, A_j + residuals);
+  }
 }
 
 /// det(A'A_ref) over det(A_ref'A_ref), unseen motions left out; these, at trial_, go to unseen_.
@@ -235,7 +284,13 @@ void HandTracker::StackJacobians() noexcept {
 ///
 /// so that one elimination gives the determinant and N.
 double HandTracker::BranchDeterminant() noexcept {
-  product_ = A_.transpose().lazyProduct(A_reference_);
+  const int n = static_cast<int>(A_.cols()), rows = static_cast<int>(A_.rows());
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) {
+      product_.data()[j * n + i] =
+          DotOfDouble4(A_.data() + i * rows, A_reference_.data() + j * rows, rows);
+    }
+  }
   const bool some_unseen = unseen_.cols() > 0;
   if (some_unseen) {
     product_.transposeInPlace();
@@ -331,6 +386,7 @@ TrackStatus HandTracker::Accept(Progress progress) noexcept {
 
 void HandTracker::MoveToTrial() noexcept {
   q_ = trial_;
+  at_q_ = true;
   summary_.worst_closure = std::max(summary_.worst_closure, at_trial_.c.lpNorm<Eigen::Infinity>());
   const double behind = (q_ - q_reference_).cwiseAbs().maxCoeff();
   const bool near = determinant_ * std::exp(log_reference_ - log_best_) < kReferenceNear;

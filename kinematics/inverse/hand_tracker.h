@@ -107,6 +107,9 @@ class HandTracker {
 
   Progress TakeSteps() noexcept;
   bool TakeStep(bool with_curvature) noexcept;
+  bool TakeChordStep(double last_step) noexcept;
+  bool Linearize() noexcept;
+  void TakeClosureStep(double last_step) noexcept;
   Progress Rescue() noexcept;
   TrackStatus Judge() noexcept;
   bool IsClosed() const noexcept;
@@ -131,7 +134,8 @@ class HandTracker {
   TrackOptions options_;
   VectorXd q_, trial_, good_multipliers_;
   Linearization at_trial_;
-  MatrixXd A_, product_;  // [J; C] at trial_; A'A_ref
+  bool at_q_ = false;     // at_trial_ is of the last good pose
+  MatrixXd A_, product_;  // [J; C; 0] at trial_, whole registers; A'A_ref
   VectorXd q_reference_;  // an earlier good pose, at a distance from dead centres
   MatrixXd A_reference_;
   MatrixXd unseen_, unseen_reference_;  // N, orthonormal, at trial_ and at the reference

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <stdexcept>
 
@@ -54,6 +55,12 @@ double EnergyScale(const Vector6d& K, double length) {
   const double translational = MeanOfPositive(K.head<3>());
   if (translational > 0) return translational * length * length;
   return MeanOfPositive(K.tail<3>());
+}
+
+/// The rows of a column that there are: all six, or three of a point grasp.
+void StoreRows(const Screw& a, int rows, double* column) {
+  std::memcpy(column, &a.linear, 3 * sizeof(double));
+  if (rows == 6) std::memcpy(column + 3, &a.angular, 3 * sizeof(double));
 }
 
 int VelocitiesOf(const TreeNode& node) {
@@ -124,28 +131,26 @@ void InverseKinematics::MoveTo(const VectorXd& q) {
   LoopErrors(tree_, &ws_);
 }
 
+// Columns are written as they are in memory: Eigen's expressions of unknown size cost more than
+// what they compute.
 void InverseKinematics::EvaluateGrasp(VectorXd* r, MatrixXd* J) {
-  const Frame G = ws_.at(grasp_.node).X * grasp_.X_BG;
-  const bool rigid = grasp_.kind == GraspKind::kRigid;
-  Matrix3d A;
-  if (r) r->head<3>() = root_.head<3>().cwiseProduct(TargetPosition() - Vector3Of(G.p));
-  if (rigid) {
-    const Matrix3d R_E = X_WH_.R * RotationOf(G).transpose();
-    const Vector3d e = RotationErrorOf(rotation_error_, R_E);
-    if (r) r->tail<3>() = root_.tail<3>().cwiseProduct(e);
-    if (J) A = root_.tail<3>().asDiagonal() * RotationErrorJacobian(rotation_error_, R_E, e);
-  }
+  const Frame G = GraspInTree(), H = TargetInTree();
+  const Screw root = ScrewOf(root_), e1 = vmech::HandError(rotation_error_, G, H);
+  const int rows = sizes().residuals;
+  if (r) StoreRows(Scaled(root, e1), rows, r->data());
   if (!J) return;
-  J->setZero();
+  const Matrix3d A = RotationErrorJacobian(rotation_error_, G, H, Vector3Of(e1.angular));
+  const Frame columns = FrameOf(Posed{A, Vector3d::Zero()});
+  std::fill_n(J->data(), J->size(), 0.0);
   for (const ChainVelocity& c : grasp_chain_) {
     const Screw& S = ws_.S[c.v];
-    J->col(c.v).head<3>() = -root_.head<3>().cwiseProduct(Vector3Of(VelocityAt(G.p, S)));
-    if (rigid) J->col(c.v).tail<3>() = A * Vector3Of(S.angular);
+    const Screw fall = {-VelocityAt(G.p, S), Rotate(columns, S.angular)};
+    StoreRows(Scaled(root, fall), rows, J->data() + c.v * rows);
   }
 }
 
 void InverseKinematics::EvaluateLoops(VectorXd* c, MatrixXd* C) {
-  if (C) C->setZero();
+  if (C) std::fill_n(C->data(), C->size(), 0.0);
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
     const Loop& loop = tree_.loops[l];
     LoopState<double>& s = ws_.loops[l];
@@ -154,18 +159,22 @@ void InverseKinematics::EvaluateLoops(VectorXd* c, MatrixXd* C) {
     if (!C) continue;
     FindLoopWrenches(loop, Rotate(s.F, Matrix3d(LoopRotationJacobian(loop, s).transpose()), s.F.p),
                      &s);
+    for (int k = 0; k < loop.rows; ++k) s.wrench[k] = scale[k] * s.wrench[k];
     for (const LoopColumn& column : loop.columns) {
       const Screw S = -column.sign * ws_.S[column.v];
-      for (int k = 0; k < loop.rows; ++k) {
-        (*C)(loop.row + k, column.v) = scale[k] * Power(s.wrench[k], S);
-      }
+      double* C_v = C->data() + column.v * tree_.rows + loop.row;
+      for (int k = 0; k < loop.rows; ++k) C_v[k] = Power(s.wrench[k], S);
     }
   }
 }
 
-/// That of the hand about the tree's reference point.
-Vector3d InverseKinematics::TargetPosition() const {
-  return X_WH_.p - ws_.reference;
+/// About the tree's reference point, like all that follow.
+Frame InverseKinematics::GraspInTree() const {
+  return ws_.at(grasp_.node).X * grasp_.X_BG;
+}
+
+Frame InverseKinematics::TargetInTree() const {
+  return FrameOf(Posed{X_WH_.R, X_WH_.p - ws_.reference});
 }
 
 void InverseKinematics::Plus(const VectorXd& q, const VectorXd& dq, VectorXd* q_plus) const {
@@ -181,10 +190,10 @@ void InverseKinematics::Curvature(const VectorXd& q, const VectorXd& mu, MatrixX
 }
 
 void InverseKinematics::AddGraspCurvature(MatrixXd* S) {
-  const Frame G = ws_.at(grasp_.node).X * grasp_.X_BG;
+  const Frame G = GraspInTree(), H = TargetInTree();
   // r_i d2r_i = (K/E e1)_i d2e1_i, and e1 falls as G moves.
   CurvatureWeights weights;
-  weights.f = -(K_ / energy_).head<3>().cwiseProduct(TargetPosition() - Vector3Of(G.p));
+  weights.f = -(K_ / energy_).head<3>().cwiseProduct(Vector3Of(Double4(H.p - G.p)));
   weights.g.setZero();
   weights.G.setZero();
   if (grasp_.kind == GraspKind::kRigid) {

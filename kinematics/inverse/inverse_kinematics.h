@@ -72,6 +72,11 @@ class InverseKinematics final : public ConstrainedLeastSquares {
   VectorXd LoopMultipliers(const VectorXd& mu) const;
   /// The state of the tree at the last q that one of the above was called with.
   const TreeWorkspace<double>& workspace() const { return ws_; }
+  /// At q: what ForwardKinematics and LoopErrors write.
+  const TreeWorkspace<double>& WorkspaceAt(const VectorXd& q) {
+    MoveTo(q);
+    return ws_;
+  }
 
  private:
   /// A velocity that moves the frame at the end of a chain, in the chain's order from its fixed
@@ -95,7 +100,8 @@ class InverseKinematics final : public ConstrainedLeastSquares {
   void AddLoopCurvature(int loop, const VectorXd& mu, MatrixXd* S);
   void AddChainCurvature(const Chain& chain, const CurvatureWeights& weights, MatrixXd* S) const;
   void UnitTwists(const Chain& chain, const Frame& X);
-  Vector3d TargetPosition() const;
+  Frame GraspInTree() const;
+  Frame TargetInTree() const;
 
   const KinematicTree& tree_;
   GraspFrame grasp_;
