@@ -15,7 +15,8 @@ namespace vmech {
 namespace {
 
 constexpr double kSufficientDecrease = 1e-4;
-constexpr double kShortestStep = 1e-12;   // of the line search, as a part of the full step
+constexpr double kShortestStep = 1e-12;           // of the line search, as a part of the full step
+constexpr double kRoundingOfConstraints = 1e-15;  // over their slopes
 constexpr double kRounding = 1e-14;       // changes of the merit below this (relative) are noise
 constexpr double kClosingDamping = 1e-2;  // of the step that closes c, times |c|^2
 constexpr double kLeastDamping = 1e-13;   // of the tangential step, relative to Z'BZ
@@ -273,11 +274,8 @@ class NullspaceWorkspace::Solver {
     return Merit(at_trial_) <= allowed;
   }
 
-  // What is within the tolerance counts as closed: beside a small objective its rounding would be
-  // taken for a constraint that gets worse.
   double Merit(const Linearization& at) const {
-    const double open = std::sqrt(SquaredNorm(at.c)) - options_->stopping.constraint_tolerance;
-    return 0.5 * SquaredNorm(at.r) + nu_ * std::max(0.0, open);
+    return 0.5 * SquaredNorm(at.r) + nu_ * std::sqrt(SquaredNorm(at.c));
   }
 
   // Backtracking on 1/2 |r|^2 + nu |c|; the full step gets a second-order correction before it is
@@ -288,7 +286,9 @@ class NullspaceWorkspace::Solver {
     AddProduct(at_x_.C.data(), Size(residual_), Size(d_), d_.data(), residual_.data());
     const double slope = RaiseWeight(c_norm - std::sqrt(SquaredNorm(residual_)));
     const double merit = Merit(at_x_);
-    const double noise = kRounding * std::abs(merit);
+    // Beside a small objective the rounding of c would be taken for a constraint that gets worse.
+    const double noise =
+        kRounding * std::abs(merit) + kRoundingOfConstraints * nu_ * MaxAbs(at_x_.C);
     for (double t = 1; t > kShortestStep; t *= 0.5) {
       const double allowed = merit + kSufficientDecrease * t * slope + noise;
       for (int i = 0; i < Size(d_); ++i) trial_d_[i] = t * d_[i];
