@@ -2,7 +2,7 @@
 
 - No component includes another that includes it back, directly or not. A component is a header, a
   source or both of one name.
-- A folder holds at most MAX_COMPONENTS components; that of a module holds a README.md.
+- A folder of sources holds at most MAX_COMPONENTS components, and a README.md.
 - Functions are short: MEDIAN_LINES at the median, and at most LONG_SHARE of them are longer than
   LONG_LINES, counted from the first line of the signature to the closing brace.
 """
@@ -53,8 +53,8 @@ def folder_problems(components):
     for folder, inside in sorted(folders.items()):
         if len(inside) > MAX_COMPONENTS:
             yield f"{relative(folder)}: {len(inside)} components, at most {MAX_COMPONENTS}"
-        if (folder / "CMakeLists.txt").is_file() and not (folder / "README.md").is_file():
-            yield f"{relative(folder)}: a module without a README.md"
+        if not (folder / "README.md").is_file():
+            yield f"{relative(folder)}: a folder of sources without a README.md"
 
 
 def length_problems(functions):
