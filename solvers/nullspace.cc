@@ -288,7 +288,7 @@ class NullspaceWorkspace::Solver {
     const double merit = Merit(at_x_);
     // Beside a small objective the rounding of c would be taken for a constraint that gets worse.
     const double noise =
-        kRounding * std::abs(merit) + kRoundingOfConstraints * nu_ * MaxAbs(at_x_.C);
+        kRounding * std::abs(merit) + kRoundingOfConstraints * nu_ * at_x_.C.norm();
     for (double t = 1; t > kShortestStep; t *= 0.5) {
       const double allowed = merit + kSufficientDecrease * t * slope + noise;
       for (int i = 0; i < Size(d_); ++i) trial_d_[i] = t * d_[i];

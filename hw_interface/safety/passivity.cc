@@ -50,8 +50,9 @@ void PassivityController::Observe(const Screw& F_Ho_D, const Screw& dX, double e
 }
 
 bool PassivityController::Control(Screw* F_Ho_D) const noexcept {
-  constexpr double kAtRest = 1e-12;  // [m^2/s^2]: no motion that could dissipate
-  if (!options_.enabled || energy_ >= 0) return false;
+  constexpr double kAtRest = 1e-12;    // [m^2/s^2]: no motion that could dissipate
+  constexpr double kRounding = 1e-12;  // [J]: of stored energies, at rest
+  if (!options_.enabled || energy_ >= -kRounding) return false;
   const Screw wanted = *F_Ho_D;
   const double debt = -energy_;
   const double beyond = std::max(0.0, debt - options_.grace);

@@ -33,8 +33,8 @@ struct PassivityOptions {
 /// dx_k = x_k - x_k-1 the measured motion, F the wrench at work meanwhile, b the handle's own
 /// damping, which pays for what sampling makes of a stiff spring, S the energy that the virtual
 /// mechanism says it stores (kinetic, potential, springs; constant if unknown); a debt is forgiven
-/// slowly. While E < 0 the wrench loses its part along the motion that would drive the hand, gains
-/// damping, and fades with what the debt has beyond the grace E_g,
+/// slowly. While E < 0, by more than rounding, the wrench loses its part along the motion that
+/// would drive the hand, gains damping, and fades with what the debt has beyond the grace E_g,
 ///
 ///   F <- f F - s (max(0, f F'V/V'WV) + alpha) W V,   W = diag(1, lever^2),
 ///   s = min(1, -E/E_g),   f = 1 + min(0, E + E_g)/E_largest,
