@@ -23,7 +23,7 @@ class SolverEntry {
   std::optional<Backend> backend() const;
   bool Takes(const TargetBlock& block) const { return backend() || block.is_path(); }
 
-  friend auto operator<=>(const SolverEntry&, const SolverEntry&) = default;
+  friend auto operator<=>(const SolverEntry&, const SolverEntry&) = default;  // NOLINT
 
  private:
   int place_ = 0;  // in the order of tables: that of Backend, then the fast path

@@ -73,7 +73,7 @@ struct ProblemId {
   int mechanism = 0;
   int block = 0;
   int index = 0;
-  friend auto operator<=>(const ProblemId&, const ProblemId&) = default;
+  friend auto operator<=>(const ProblemId&, const ProblemId&) = default;  // NOLINT
 };
 
 /// All problems of a suite, in order.
