@@ -9,8 +9,6 @@
 #include "vmech/base/linear_algebra/linear_algebra.h"
 #include "vmech/base/linear_algebra/small_ldlt.h"
 #include "vmech/base/screw_algebra.h"
-#include "vmech/dynamics/in_hand/passive_joints.h"
-#include "vmech/dynamics/loads/pose/contact_friction.h"
 #include "vmech/dynamics/loads/pose/idle_freedoms.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
 #include "vmech/kinematics/tree/validity.h"
@@ -43,6 +41,7 @@ HandDynamics::HandDynamics(const KinematicTree& tree, const GraspFrame& grasp,
       K_(RowsThatCount(stiffness, grasp.kind)),
       root_K_(K_.cwiseSqrt()),
       pose_(tree, grasp),
+      passive_(tree),
       system_(tree.nv, static_cast<int>(pose_.C().rows())),
       rootKJ_(MatrixXd::Zero(PaddedSize(6), tree.nv)),
       A_(MatrixXd::Zero(tree.nv, tree.nv)),
@@ -57,10 +56,8 @@ HandDynamics::HandDynamics(const KinematicTree& tree, const GraspFrame& grasp,
       d_(pose_.e2()),
       zero_(d_),
       mu_(d_),
-      joints_(tree.mechanism.joints.size()),
-      spring_length_(tree.nv, 0.0) {
+      joints_(tree.mechanism.joints.size()) {
   RequireCoordinates("HandDynamics: q", tree, q);
-  RefuseUnrenderedFriction(tree);
   const double k = MeanStiffness(K_, tree.length);
   if (!(k > 0)) throw std::invalid_argument("hand: a stiffness above zero is needed");
   system_.SetWeight(kLoopWeight * k * tree.length * tree.length);
@@ -103,7 +100,7 @@ bool HandDynamics::Evaluate(const Vector6d& V_WG, const Vector6d& A_WG, double i
   SolveMotion(inertia * A_WG - Vector6Of(pose_.GraspBias()), d_, &vdot_);
   pose_.SetAccelerations(vdot_);
   pose_.ComputeForces(&tau_);
-  PassiveForces();
+  passive_.AddForces(q_, v_, &tau_);
   system_.Solve(A_, pose_.C(), tau_, zero_, &x_);
   w_d_ = K_.cwiseProduct(Vector6Of(pose_.Twist(x_)));
   system_.ComputeMultipliers(pose_.C(), zero_, &mu_);
@@ -140,46 +137,8 @@ void HandDynamics::SolveMotion(const Vector6d& b, const VectorXd& d, VectorXd* x
   system_.Solve(A_, pose_.C(), right_, d, x);
 }
 
-/// |f v| of the contact in which a node's freedom slides, f its constant friction.
-double HandDynamics::SlidingPower(size_t node_index) const noexcept {
-  const TreeNode& node = tree_.nodes[node_index];
-  const Joint& joint = tree_.mechanism.joints[node.joint];
-  const int freedoms = static_cast<int>(joint.passive.size());
-  const size_t first =
-      node_index - static_cast<size_t>(node.reversed ? freedoms - 1 - node.freedom : node.freedom);
-  double square = 0;
-  for (size_t i = first; i < first + joint.passive.size(); ++i) {
-    if (joint.type == JointType::kUniversal && i != node_index) continue;  // two pins
-    const TreeNode& other = tree_.nodes[i];
-    const double power = joint.passive[other.freedom].coulomb * v_[other.v];
-    square += power * power;
-  }
-  return std::sqrt(square);
-}
-
-/// Takes from tau_ what springs, dampers and dry friction supply.
-void HandDynamics::PassiveForces() noexcept {
-  for (size_t i = 0; i < tree_.nodes.size(); ++i) {
-    const TreeNode& node = tree_.nodes[i];
-    if (node.v < 0 || node.motion == NodeMotion::kSpherical) continue;
-    const Passive& passive = tree_.mechanism.joints[node.joint].passive[node.freedom];
-    const double rate = v_[node.v];
-    const double power = passive.coulomb == 0 ? 0 : SlidingPower(i);
-    const double dry = rate * FrictionDamping(passive.coulomb, power, kSlowSliding);
-    spring_length_[node.v] = q_[node.q] - passive.rest;
-    tau_[node.v] += passive.stiffness * spring_length_[node.v] + passive.viscous * rate + dry;
-  }
-}
-
 double HandDynamics::Energy() const noexcept {
-  double energy = pose_.KineticEnergy() + pose_.WeightEnergy();
-  for (const TreeNode& node : tree_.nodes) {
-    if (node.v < 0 || node.motion == NodeMotion::kSpherical) continue;
-    const double length = spring_length_[node.v];
-    const Passive& passive = tree_.mechanism.joints[node.joint].passive[node.freedom];
-    energy += 0.5 * passive.stiffness * length * length;
-  }
-  return energy;
+  return pose_.KineticEnergy() + pose_.WeightEnergy() + passive_.Energy(q_);
 }
 
 }  // namespace vmech

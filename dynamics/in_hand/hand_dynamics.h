@@ -4,6 +4,7 @@
 
 #include "vmech/base/linear_algebra/saddle_system.h"
 #include "vmech/dynamics/in_hand/grasped_mechanism.h"
+#include "vmech/dynamics/in_hand/passive_joints.h"
 
 namespace vmech {
 
@@ -57,19 +58,17 @@ class HandDynamics {
  private:
   bool Factor() noexcept;
   void SolveMotion(const Vector6d& b, const VectorXd& d, VectorXd* x) noexcept;
-  double SlidingPower(size_t node_index) const noexcept;
-  void PassiveForces() noexcept;
   void HoldIdleFreedoms();
 
   const KinematicTree& tree_;
   Vector6d K_, root_K_;
   GraspedMechanism pose_;
+  PassiveJoints passive_;
   SaddleSystem system_;
   MatrixXd rootKJ_, A_;
   VectorXd damping_;  // [nv], of the trace of A
   VectorXd q_, v_, felt_v_, vdot_, tau_, x_, right_, d_, zero_, mu_;
   std::vector<Wrenchd> joints_;
-  std::vector<double> spring_length_;  // per velocity: q - rest
   Vector6d w_d_ = Vector6d::Zero();
 };
 

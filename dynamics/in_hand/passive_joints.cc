@@ -36,8 +36,8 @@ PassiveJoints::PassiveJoints(const KinematicTree& tree) {
   }
 }
 
-void PassiveJoints::AddTo(const VectorXd& q, const VectorXd& v, double step, MatrixXd* A,
-                          VectorXd* right) const noexcept {
+template <typename Visit>
+void PassiveJoints::ForEachDamper(const VectorXd& v, const Visit& visit) const noexcept {
   for (size_t first = 0, end = 0; first < freedoms_.size(); first = end) {
     double square = 0;
     for (; end < freedoms_.size() && freedoms_[end].contact == freedoms_[first].contact; ++end) {
@@ -46,12 +46,25 @@ void PassiveJoints::AddTo(const VectorXd& q, const VectorXd& v, double step, Mat
     }
     const double power = std::sqrt(square);
     for (size_t i = first; i < end; ++i) {
-      const Freedom& f = freedoms_[i];
-      const double dry = FrictionDamping(f.passive.coulomb, power, kSlowSliding);
-      (*A)(f.v, f.v) += step * f.passive.stiffness + f.passive.viscous + dry;
-      (*right)[f.v] -= f.passive.stiffness * (q[f.q] - f.passive.rest);
+      const Passive& passive = freedoms_[i].passive;
+      const double dry = FrictionDamping(passive.coulomb, power, kSlowSliding);
+      visit(freedoms_[i], passive.viscous + dry);
     }
   }
+}
+
+void PassiveJoints::AddTo(const VectorXd& q, const VectorXd& v, double step, MatrixXd* A,
+                          VectorXd* right) const noexcept {
+  ForEachDamper(v, [&](const Freedom& f, double damping) {
+    (*A)(f.v, f.v) += step * f.passive.stiffness + damping;
+    (*right)[f.v] -= f.passive.stiffness * (q[f.q] - f.passive.rest);
+  });
+}
+
+void PassiveJoints::AddForces(const VectorXd& q, const VectorXd& v, VectorXd* tau) const noexcept {
+  ForEachDamper(v, [&](const Freedom& f, double damping) {
+    (*tau)[f.v] += f.passive.stiffness * (q[f.q] - f.passive.rest) + damping * v[f.v];
+  });
 }
 
 double PassiveJoints::Energy(const VectorXd& q) const noexcept {

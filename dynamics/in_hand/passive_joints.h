@@ -6,8 +6,8 @@
 
 namespace vmech {
 
-/// Springs, friction and limits of the tree's joints in a hand, taken at the end of steps of T, so
-/// that they only take energy.
+/// Springs, friction and limits of the tree's joints in a hand. Steps of T take them at their end,
+/// so that they only take energy.
 class PassiveJoints {
  public:
   /// @throws std::invalid_argument naming the joint for friction in proportion to a joint's load,
@@ -18,6 +18,8 @@ class PassiveJoints {
   /// it is at the velocities v, of all freedoms of a contact together.
   void AddTo(const VectorXd& q, const VectorXd& v, double step, MatrixXd* A,
              VectorXd* right) const noexcept;
+  /// tau += k (q - rest) + c v [nv]: what it takes to move against them, c as above.
+  void AddForces(const VectorXd& q, const VectorXd& v, VectorXd* tau) const noexcept;
   /// Energy of the springs [J].
   double Energy(const VectorXd& q) const noexcept;
 
@@ -37,6 +39,10 @@ class PassiveJoints {
     int contact;   // the same for all freedoms that slide together
     int held = 0;  // -1 at the lower limit, 1 at the upper
   };
+
+  /// visit(freedom, c) with c what all its friction is as a damper at v.
+  template <typename Visit>
+  void ForEachDamper(const VectorXd& v, const Visit& visit) const noexcept;
 
   std::vector<Freedom> freedoms_;
   bool at_limit_ = false;
