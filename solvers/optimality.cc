@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Cholesky>
+
 #include "vmech/base/linear_algebra/small_ldlt.h"
 
 namespace vmech {
