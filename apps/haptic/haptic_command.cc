@@ -12,6 +12,7 @@
 #include "vmech/apps/commands.h"
 #include "vmech/apps/files/file_kind.h"
 #include "vmech/apps/haptic/haptic_session.h"
+#include "vmech/dynamics/in_hand/passive_joints.h"
 #include "vmech/hw_interface/loop/replay_master.h"
 #include "vmech/hw_interface/loop/runner.h"
 #include "vmech/hw_interface/safety/stability.h"
@@ -89,19 +90,6 @@ Mechanism Assembled(const HapticArguments& arguments, Mechanism mechanism) {
   return assembled.mechanism;
 }
 
-/// Joints with springs or friction stay whole: the hand's dynamics know them in the tree only.
-SpanningTreeOptions KeepSprings(const Mechanism& mechanism) {
-  SpanningTreeOptions options;
-  for (size_t j = 0; j < mechanism.joints.size(); ++j) {
-    for (const Passive& p : mechanism.joints[j].passive) {
-      if (p.stiffness == 0 && p.viscous == 0 && p.coulomb == 0) continue;
-      options.keep.push_back(static_cast<int>(j));
-      break;
-    }
-  }
-  return options;
-}
-
 RunnerOptions OptionsOf(const HapticArguments& arguments, const Matrix3d& R_WD,
                         const SafetyOptions& safety) {
   RunnerOptions options;
@@ -129,7 +117,7 @@ struct HeldMechanism {
   explicit HeldMechanism(const HapticArguments& arguments)
       : subject(ReadSubject(arguments.file, arguments.grasp)),
         tree(BuildKinematicTree(Assembled(arguments, subject.mechanism),
-                                KeepSprings(subject.mechanism))),
+                                KeepPassiveJoints(subject.mechanism))),
         q(StartCoordinates(tree)),
         R_WD(DeviceAxes(subject.mechanism)) {
     const GraspFrame grasp = GraspFrameOf(tree, subject.grasp);

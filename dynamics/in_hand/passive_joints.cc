@@ -111,6 +111,23 @@ bool HasPassive(const Passive& passive) {
   return passive.stiffness != 0 || passive.viscous != 0 || passive.coulomb != 0;
 }
 
+SpanningTreeOptions KeepPassiveJoints(const Mechanism& mechanism) {
+  SpanningTreeOptions options;
+  for (size_t j = 0; j < mechanism.joints.size(); ++j) {
+    const Joint& joint = mechanism.joints[j];
+    const auto limited = [](const std::vector<double>& limits) {
+      return std::any_of(limits.begin(), limits.end(),
+                         [](double limit) { return std::isfinite(limit); });
+    };
+    if (std::any_of(joint.passive.begin(), joint.passive.end(), HasPassive)) {
+      options.keep.push_back(static_cast<int>(j));
+    } else if (limited(joint.lower) || limited(joint.upper)) {
+      options.prefer.push_back(static_cast<int>(j));
+    }
+  }
+  return options;
+}
+
 void RefuseUnrenderedFriction(const KinematicTree& tree) {
   for (const Joint& joint : tree.mechanism.joints) {
     if (joint.load_friction.coefficient == 0) continue;
@@ -121,9 +138,7 @@ void RefuseUnrenderedFriction(const KinematicTree& tree) {
   }
   for (const Loop& loop : tree.loops) {
     const Joint& joint = tree.mechanism.joints[loop.joint];
-    if (std::none_of(joint.passive.begin(), joint.passive.end(),
-                     [](const Passive& passive) { return HasPassive(passive); }))
-      continue;
+    if (std::none_of(joint.passive.begin(), joint.passive.end(), HasPassive)) continue;
     throw std::invalid_argument(
         fmt::format("joint '{}' is cut, but has a spring or friction; name another joint in `cuts`",
                     joint.name));

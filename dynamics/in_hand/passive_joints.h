@@ -54,6 +54,10 @@ bool HasPassive(const Passive& passive);
 /// Dry friction builds up in proportion to the speed until here [m/s] or [rad/s].
 inline constexpr double kSlowSliding = 1e-2;
 
+/// How to cut loops for these paths, which know springs, friction and limits of joints in the tree
+/// only: joints with springs or friction are kept whole, those with limits where that can be.
+SpanningTreeOptions KeepPassiveJoints(const Mechanism& mechanism);
+
 /// What PassiveJoints refuses. @throws std::invalid_argument
 void RefuseUnrenderedFriction(const KinematicTree& tree);
 

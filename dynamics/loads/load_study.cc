@@ -1,5 +1,9 @@
 #include "vmech/dynamics/loads/load_study.h"
 
+#include <stdexcept>
+
+#include <fmt/format.h>
+
 #include "vmech/base/check_range.h"
 
 namespace vmech {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <fstream>
+#include <stdexcept>
 #include <string_view>
 
 namespace vmech {

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <random>
+#include <stdexcept>
 #include <thread>
 
 #include "vmech/base/check_range.h"

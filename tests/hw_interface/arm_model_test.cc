@@ -1,5 +1,7 @@
 #include "vmech/hw_interface/arm/arm_model.h"
 
+#include <array>
+
 #include <gtest/gtest.h>
 
 #include "support/examples.h"

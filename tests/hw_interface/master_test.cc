@@ -1,5 +1,7 @@
 #include "vmech/hw_interface/masters/master.h"
 
+#include <stdexcept>
+
 #include <gtest/gtest.h>
 
 namespace vmech {

@@ -1,5 +1,7 @@
 #include "vmech/hw_interface/masters/plugin_master.h"
 
+#include <stdexcept>
+
 #include <gtest/gtest.h>
 
 namespace vmech {

@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <limits>
+#include <stdexcept>
 
 #include "support/temp_folder.h"
 #include "vmech/hw_interface/loop/replay_master.h"

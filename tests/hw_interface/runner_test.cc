@@ -1,5 +1,7 @@
 #include "vmech/hw_interface/loop/runner.h"
 
+#include <stdexcept>
+
 #include <gtest/gtest.h>
 
 #include "hw_interface/point_master.h"

@@ -1,5 +1,7 @@
 #include "vmech/hw_interface/masters/spacenav_master.h"
 
+#include <stdexcept>
+
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <sys/un.h>

@@ -1,5 +1,7 @@
 #include "vmech/kinematics/loops/loop_clusters.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "support/examples.h"

@@ -2,6 +2,7 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <stdexcept>
 
 #include "textbook_problems.h"
 #include "vmech/solvers/backend.h"

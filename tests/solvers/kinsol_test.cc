@@ -1,5 +1,7 @@
 #include "vmech/solvers/backends/kinsol.h"
 
+#include <stdexcept>
+
 #include <gtest/gtest.h>
 
 #include "textbook_problems.h"

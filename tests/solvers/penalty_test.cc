@@ -4,6 +4,7 @@
 
 #include <Eigen/QR>
 #include <limits>
+#include <stdexcept>
 
 #include "textbook_problems.h"
 #include "vmech/solvers/augmented_lagrangian.h"

@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <regex>
+#include <stdexcept>
 
 #include "vmech/apps/plot/decimate.h"
 #include "vmech/apps/plot/line_plot.h"

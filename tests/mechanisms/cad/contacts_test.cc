@@ -1,5 +1,7 @@
 #include "vmech/mechanisms/cad/contacts.h"
 
+#include <stdexcept>
+
 #include <gtest/gtest.h>
 
 namespace vmech {

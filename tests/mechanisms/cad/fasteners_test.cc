@@ -1,5 +1,7 @@
 #include "vmech/mechanisms/cad/fasteners.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "vmech/mechanisms/cad/mechanism_from_cad.h"
