@@ -82,6 +82,14 @@ struct HapticArguments {
 };
 int RunHaptic(const HapticArguments& arguments);
 
+struct ViewArguments {
+  std::filesystem::path file;       ///< mechanism, study or result folder
+  std::filesystem::path meshes;     ///< of the links; empty: "<mechanism>-meshes" beside the file
+  std::optional<double> tolerance;  ///< instead of the mechanism's own
+  int port = 0;                     ///< 0: any free one
+};
+int RunView(const ViewArguments& arguments);
+
 struct ReplayArguments {
   std::filesystem::path recording;  ///< of vmech haptic
   std::filesystem::path file;       ///< mechanism or study; empty: that of the recording

@@ -199,6 +199,30 @@ void AddHaptic(CLI::App* app, vmech::HapticArguments* haptic) {
   command->add_flag("-q,--quiet", haptic->quiet, "print nothing but errors");
 }
 
+constexpr const char* kViewHelp =
+    "Shows a mechanism in the browser, to be looked at and taken in hand: any link can be dragged\n"
+    "with the mouse, joints have sliders, and the loads on the joints are read off. Of a study "
+    "the\n"
+    "motion is played; of a result folder of `vmech loads` the motion that is in it. The page is "
+    "on\n"
+    "this machine alone (127.0.0.1), at an address that nobody can guess.";
+
+void AddView(CLI::App* app, vmech::ViewArguments* view) {
+  CLI::App* command = app->add_subcommand("view", kViewHelp);
+  command->add_option("FILE", view->file, "mechanism, study or result folder")
+      ->required()
+      ->type_name("FILE");
+  command
+      ->add_option("--meshes", view->meshes,
+                   "folder with an STL file for every link, as `vmech import --meshes` writes it "
+                   "(default: <mechanism>-meshes beside the file)")
+      ->type_name("DIR");
+  command->add_option("--port", view->port, "of the page; 0 for any free one")
+      ->check(CLI::Range(0, 65535, "0..65535"))
+      ->capture_default_str();
+  AddTolerance(command, &view->tolerance);
+}
+
 constexpr const char* kReplayHelp =
     "Runs a recording of vmech haptic --record through the same loop again and prints the same\n"
     "report. With --motion the hand becomes the table of a study: motion: {grasp: .., table: ..}";
@@ -271,6 +295,7 @@ struct Arguments {
   vmech::IkArguments ik;
   vmech::HapticArguments haptic;
   vmech::ReplayArguments replay;
+  vmech::ViewArguments view;
   vmech::ExportArguments exported;
   std::string shell;
 };
@@ -289,6 +314,7 @@ void AddCommands(CLI::App* app, Arguments* arguments) {
   AddIk(app, &arguments->ik);
   AddHaptic(app, &arguments->haptic);
   AddReplay(app, &arguments->replay);
+  AddView(app, &arguments->view);
   AddExport(app, &arguments->exported);
   app->add_subcommand("completion", kCompletionHelp)
       ->add_option("SHELL", arguments->shell, "for which shell")
@@ -308,6 +334,7 @@ int RunCommand(const CLI::App& app, const Arguments& arguments) {
   if (app.got_subcommand("ik")) return RunIk(arguments.ik);
   if (app.got_subcommand("haptic")) return RunHaptic(arguments.haptic);
   if (app.got_subcommand("replay")) return RunReplay(arguments.replay);
+  if (app.got_subcommand("view")) return RunView(arguments.view);
   if (app.got_subcommand("export")) return RunExport(arguments.exported);
   if (app.got_subcommand("completion")) return PrintCompletion();
   return RunCompare(arguments.compare);

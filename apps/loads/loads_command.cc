@@ -9,6 +9,7 @@
 #include "vmech/apps/console/progress_bar.h"
 #include "vmech/apps/files/file_kind.h"
 #include "vmech/apps/files/result_folder.h"
+#include "vmech/apps/loads/named_study.h"
 #include "vmech/apps/loads/tables.h"
 #include "vmech/apps/report/cycle.h"
 #include "vmech/apps/report/joint_section.h"
@@ -26,17 +27,6 @@ namespace {
 int Threads(const LoadsArguments& arguments) {
   if (arguments.threads > 0) return arguments.threads;
   return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 64);
-}
-
-/// RunStudy, whose errors name the study.
-StudyOutcome RunNamed(const StudyFile& file, const LoadStudyOptions& options) {
-  try {
-    return RunStudy(file, options);
-  } catch (const std::invalid_argument& error) {
-    throw FileErrors(file.path.string(), error.what());
-  } catch (const std::runtime_error& error) {
-    throw std::runtime_error(fmt::format("{}: {}", file.path.string(), error.what()));
-  }
 }
 
 /// The components with a verdict, as in ": fz mx my"; empty if there are none.
@@ -160,7 +150,7 @@ int RunLoads(const LoadsArguments& arguments) {
       bar.Show(done);
       return true;
     };
-    outcome = RunNamed(file, options);
+    outcome = RunNamedStudy(file, options);
   }
   if (arguments.strict) RequireNoWarning(arguments.study, outcome);
   // Rendered while the tables are written, each of which waits for the disk.

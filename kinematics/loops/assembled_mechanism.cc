@@ -215,6 +215,26 @@ std::string MovedStartText(const Mechanism& m, const MovedStart& moved) {
 
 }  // namespace
 
+void SetStarts(const KinematicTree& tree, const VectorXd& q, Mechanism* mechanism) {
+  SetTreeStarts(tree, q, mechanism);
+  SetCutStarts(tree, q, mechanism);
+}
+
+std::vector<double> StartOfFreedoms(const Mechanism& mechanism) {
+  std::vector<double> all;
+  for (const Joint& joint : mechanism.joints) {
+    const std::vector<double>& start = joint.start;
+    if (joint.type != JointType::kSpherical) {
+      all.insert(all.end(), start.begin(), start.end());
+      continue;
+    }
+    const Eigen::AngleAxisd turn(Eigen::Quaterniond(start[0], start[1], start[2], start[3]));
+    const Vector3d vector = turn.angle() * turn.axis();
+    all.insert(all.end(), vector.begin(), vector.end());
+  }
+  return all;
+}
+
 std::vector<std::string> AssembledMechanism::Notes() const {
   std::vector<std::string> notes;
   if (summary.closed && summary.starts > 1) {

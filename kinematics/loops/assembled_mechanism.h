@@ -52,6 +52,14 @@ AssembledMechanism AssembleMechanism(const Mechanism& mechanism,
 AssembledMechanism RequireAssembled(const Mechanism& mechanism,
                                     const AssembleOptions& options = {});
 
+/// Gives all joints, cut or not, the start values of a closed pose q of the mechanism's tree;
+/// angles of cut joints in the turn that is nearest to what they start at.
+void SetStarts(const KinematicTree& tree, const VectorXd& q, Mechanism* mechanism);
+
+/// The start values of all freedoms, joint after joint, in the order of a joint's lists; those of a
+/// spherical joint are its rotation vector.
+std::vector<double> StartOfFreedoms(const Mechanism& mechanism);
+
 /// Joints whose start values are outside their limits, a sentence each.
 std::vector<std::string> StartsOutsideLimits(const Mechanism& mechanism);
 

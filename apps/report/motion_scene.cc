@@ -1,0 +1,41 @@
+#include "vmech/apps/report/motion_scene.h"
+
+#include "vmech/apps/report/cycle.h"
+#include "vmech/apps/view/meshes.h"
+#include "vmech/apps/view/scene.h"
+#include "vmech/kinematics/loops/assembled_mechanism.h"
+
+namespace vmech {
+namespace {
+
+/// Of the assembled mechanism, with the loops cut where the study has cut them.
+KinematicTree TreeOf(const LoadStudy& study, const LoadStudyResult& loads) {
+  SpanningTreeOptions options;
+  for (const std::string& cut : loads.cut_joints) {
+    options.cut.push_back(FindJoint(study.mechanism, cut));
+  }
+  return BuildKinematicTree(AssembleMechanism(study.mechanism).mechanism, options);
+}
+
+}  // namespace
+
+std::string MotionScene(const StudyFile& file, const LoadStudyResult& loads,
+                        std::string_view version, std::string_view session) {
+  const KinematicTree tree = TreeOf(file.study, loads);
+  const Cycle cycle = CycleOf(file.study, loads);
+  Scene scene;
+  scene.title = file.name;
+  scene.version = version;
+  scene.tree = &tree;
+  scene.meshes = ReadMeshes(tree.mechanism, MeshFolderOf(file.mechanism_path));
+  scene.study = &file.study;
+  scene.loads = &loads;
+  scene.axis = {cycle.axis.title, cycle.axis.unit, cycle.values, {}};
+  for (const plot::Station& centre : cycle.dead_centres) {
+    scene.axis.dead_centres.push_back({centre.x, centre.label});
+  }
+  scene.session = session;
+  return SceneJson(scene);
+}
+
+}  // namespace vmech
