@@ -3,13 +3,17 @@
 class ArrowPool {
   constructor(parent, colour, capacity, thickness) {
     this.thickness = thickness;
-    this.material = new THREE.MeshBasicMaterial({color: shade(colour)});
+    const tint = shade(colour);
+    this.material = new THREE.MeshLambertMaterial({color: tint,
+      emissive: tint.clone().multiplyScalar(0.5)});
+    this.veiled = new THREE.MeshBasicMaterial({color: tint, transparent: true, opacity: 0.38,
+      depthFunc: THREE.GreaterDepth, depthWrite: false});
     this.shafts = this.instanced(
-        new THREE.CylinderBufferGeometry(1, 1, 1, 12).rotateX(Math.PI / 2).translate(0, 0, 0.5), capacity);
-    this.heads = this.instanced(
-        new THREE.ConeBufferGeometry(1, 1, 20).rotateX(Math.PI / 2).translate(0, 0, 0.5), 2 * capacity);
+        new THREE.CylinderBufferGeometry(1, 1, 1, 12), capacity);
+    this.heads = this.instanced(new THREE.ConeBufferGeometry(1, 1, 20), 2 * capacity);
     this.capacity = capacity;
-    parent.add(this.shafts, this.heads);
+    this.hidden = [this.shafts, this.heads].map((mesh) => this.behind(mesh));
+    parent.add(this.shafts, this.heads, ...this.hidden);
     this.z = new THREE.Vector3(0, 0, 1);
     this.way = new THREE.Vector3();
     this.at = new THREE.Vector3();
@@ -20,10 +24,20 @@ class ArrowPool {
   }
 
   instanced(geometry, capacity) {
+    geometry.rotateX(Math.PI / 2).translate(0, 0, 0.5);
     const mesh = new THREE.InstancedMesh(geometry, this.material, capacity);
     mesh.frustumCulled = false;
     mesh.count = 0;
     return mesh;
+  }
+
+  // The same arrows where something stands before them, as a veil over it.
+  behind(mesh) {
+    const veil = new THREE.InstancedMesh(mesh.geometry, this.veiled, this.capacity);
+    veil.instanceMatrix = mesh.instanceMatrix;
+    veil.frustumCulled = false;
+    veil.renderOrder = 2;
+    return veil;
   }
 
   clear() {
@@ -55,6 +69,9 @@ class ArrowPool {
   }
 
   finish() {
+    this.hidden[0].count = this.shafts.count;
+    this.hidden[1].count = this.heads.count;
+    for (const mesh of this.hidden) mesh.visible = this.shafts.count > 0;
     this.shafts.visible = this.heads.visible = this.shafts.count > 0;
     this.shafts.instanceMatrix.needsUpdate = this.heads.instanceMatrix.needsUpdate = true;
   }

@@ -88,8 +88,9 @@ class Eye {
     this.distance = Math.max(0.05 * this.length, Math.min(60 * this.length, this.distance * factor));
   }
 
-  // Brings all points into the picture, seen from where the eye is.
-  fit(points, margin) {
+  // Brings all points into the picture, seen from where the eye is; `top` is the part of the height
+  // that is covered from above.
+  fit(points, margin, top) {
     if (!points.length) return;
     const back = this.back(), above = this.above(), right = cross(above, back);
     const range = (axis) => {
@@ -108,10 +109,11 @@ class Eye {
     let distance = 0.3 * this.length;
     for (const p of points) {
       const depth = this.parallel ? 0 : dot(p, back) - middle(z);
-      const high = (Math.abs(dot(p, above) - middle(y)) + margin) / tan;
+      const high = (Math.abs(dot(p, above) - middle(y)) + margin) / (tan * (1 - top));
       const wide = (Math.abs(dot(p, right) - middle(x)) + margin) / (tan * this.aspect);
       distance = Math.max(distance, depth + Math.max(high, wide));
     }
     this.distance = distance;
+    this.target = sum(this.target, above, top * tan * distance);
   }
 }

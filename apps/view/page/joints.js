@@ -47,10 +47,16 @@ class JointSymbols {
         new THREE.Matrix4().makeTranslation(0, 0, z)));
   }
 
-  // A block on a rail as long as the block's way.
+  // A block on a rail as long as the block's way; where the way begins far from the first anchor of
+  // a moving link, as in a cylinder and its piston, one tube in another.
   prismatic(parts, at, joint, index) {
     const {bar, rod, thick} = this.sizes;
     const [low, high] = this.travel(index, 0);
+    const near = Math.min(Math.abs(low), Math.abs(high));
+    if (joint.first.link !== this.scene.ground && low * high > 0 && near > 0.5 * (high - low)) {
+      this.telescope(parts, at, Math.sign(low), near, high - low);
+      return;
+    }
     const middle = 0.5 * (low + high), long = high - low + 5 * bar;
     const rail = at.first.clone().multiply(
         new THREE.Matrix4().makeTranslation(0, 0, middle));
@@ -61,6 +67,14 @@ class JointSymbols {
     const half = 0.55 * bar;
     parts.second.plate([[-half, -half], [half, -half], [half, half], [-half, half]], 0.45 * bar,
         3.2 * bar, at.second);
+  }
+
+  telescope(parts, at, sign, near, stroke) {
+    const {rod} = this.sizes, tube = Math.max(0.55 * near, near - 4 * rod);
+    const inside = Math.min(near, stroke + near - tube + 3 * rod);
+    this.disc(parts.first, at.first, sign * 0.5 * tube, 1.5 * rod, tube);
+    this.disc(parts.first, at.first, sign * tube, 1.85 * rod, 1.6 * rod);
+    this.disc(parts.second, at.second, -sign * 0.5 * inside, 0.95 * rod, inside);
   }
 
   cylindrical(parts, at, joint, index) {
@@ -87,12 +101,12 @@ class JointSymbols {
 
   // A cross: one bar along the first anchor's x, one along the second's y.
   universal(parts, at) {
-    const {rod} = this.sizes, half = 2.5 * rod;
+    const {rod} = this.sizes, half = 1.9 * rod;
     const bar = (solid, matrix, axis) => {
       const end = vectorOf(axis).multiplyScalar(half).applyMatrix4(matrix).toArray();
       const begin = vectorOf(axis).multiplyScalar(-half).applyMatrix4(matrix).toArray();
       solid.cylinder(begin, end, 0.7 * rod);
-      const cap = 0.82, grown = 1.25 * rod;
+      const cap = 0.8, grown = 1.05 * rod;
       for (const side of [-1, 1]) {
         const from = vectorOf(axis).multiplyScalar(side * half * cap).applyMatrix4(matrix).toArray();
         const to = vectorOf(axis).multiplyScalar(side * half * 1.2).applyMatrix4(matrix).toArray();

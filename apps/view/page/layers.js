@@ -32,7 +32,8 @@ function flatNormal(contacts, thickness) {
   }
   const n = pins[0].axis;
   if (pins.some((pin) => !isParallel(pin.axis, n))) return null;
-  const heights = contacts.map((contact) => dot(contact.point, n));
+  const heights = contacts.filter((contact) => contact.type !== "grasp")
+      .map((contact) => dot(contact.point, n));
   return Math.max(...heights) - Math.min(...heights) < thickness ? n : null;
 }
 

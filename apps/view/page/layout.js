@@ -3,7 +3,7 @@
 function buildLayout(view) {
   const boxes = {
     stage: make("div", {class: "vv-stage"}), player: make("div", {class: "vv-player"}),
-    tree: make("div", {}), values: make("div", {}), plots: make("div", {class: "vv-plots"}),
+    tree: make("div", {}), show: make("div", {}), values: make("div", {}), plots: make("div", {class: "vv-plots"}),
     live: make("div", {}), name: make("div", {class: "vv-tip", hidden: "", role: "tooltip"}),
     banner: make("div", {class: "vv-banner", hidden: "", role: "alert"}),
     note: make("div", {class: "vv-note", hidden: "", role: "status"})};
@@ -13,7 +13,8 @@ function buildLayout(view) {
   const side = make("div", {class: "vv-side"});
   if (scene.title) side.append(make("h2", {class: "vv-head", text: scene.title}));
   if (scene.session) side.append(section("Session", boxes.live));
-  side.append(section("Numbers", boxes.values, boxes.plots), section("Parts", boxes.tree));
+  side.append(section("Numbers", boxes.values, boxes.plots), section("Show", boxes.show),
+      section("Parts", boxes.tree));
   view.root.replaceChildren(main, side);
   new ResizeObserver(() => {
     view.root.classList.toggle("vv-narrow", view.root.clientWidth < 720);
@@ -43,7 +44,7 @@ function buildTools(view) {
       make("div", {class: "vv-tools vv-left", role: "toolbar", "aria-label": "View"},
           button("Fit", "Show all of it (f)", () => view.fit()), ...axes,
           button("Oblique", "The view at the beginning", () => view.lookWell()), parallel,
-          button("Light", "Dark or light", () => view.theme.toggle())),
+          button("Theme", "Dark or light", () => view.theme.toggle())),
       make("div", {class: "vv-tools vv-right", role: "toolbar", "aria-label": "Save"},
           button("PNG", "Save a picture of the view", () => view.exports.savePicture()),
           button("glTF", "Save the mechanism and its motion as glTF", () => view.exports.saveGltf()),

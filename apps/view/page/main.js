@@ -5,7 +5,7 @@ function openView(root) {
   if (root.classList.contains("vmech-whole") && scene.title) document.title = scene.title;
   const view = new View(root, scene);
   view.fill(buildLayout(view));
-  view.boxes.tree.before(toggles(view));
+  view.boxes.show.append(toggles(view));
   buildTools(view);
   listenToKeys(view);
   if (!view.stage.renderer) {

@@ -89,12 +89,13 @@ function poseNodes(nodes, poses) {
   }
 }
 
-// Points that the view should hold: anchors, centres and corners of the meshes, in axes of their links.
+// Points that the view should hold in axes of their links: anchors, grasps, corners of what is drawn.
 function pointsToFit(scene, nodes) {
   return scene.links.map((link, index) => {
     const points = link.anchors.map((anchor) => anchor.pose.slice(0, 3));
-    const body = nodes.links[index].children.find((mesh) => mesh.userData.kind === "link");
-    if (link.mesh && body) {
+    points.push(...scene.grasps.filter((grasp) => grasp.link === index)
+        .map((grasp) => grasp.pose.slice(0, 3)));
+    for (const body of nodes.links[index].children.filter((mesh) => mesh.userData.kind)) {
       body.geometry.computeBoundingBox();
       const {min, max} = body.geometry.boundingBox;
       for (const x of [min.x, max.x]) {

@@ -7,6 +7,8 @@ function sizesOf(scene) {
     pitch: 0.033 * length, pin: 0.0145 * length};
 }
 
+const kSliding = ["prismatic", "cylindrical", "screw"];
+
 class Shapes {
   constructor(scene) {
     this.scene = scene;
@@ -38,24 +40,37 @@ class Shapes {
 
   addBody(solid, link) {
     const contacts = this.contacts[link], {normal} = this.layers[link];
-    const points = apartFrom(contacts.map((contact) => contact.point), 0.5 * this.sizes.rod);
-    if (normal) this.addPlate(solid, points, normal, this.offset(link, normal));
-    else this.addFrame(solid, link, points);
+    const least = 0.5 * this.sizes.rod;
+    const joints = contacts.filter((contact) => contact.type !== "grasp");
+    const points = apartFrom(joints.map((contact) => contact.point), least);
+    const plane = normal || (points.length > 2 ? planeOf(points, this.sizes.rod) : null);
+    const grasps = apartFrom(contacts.map((contact) => contact.point), least).filter(
+        (point) => !points.includes(point));
+    const beside = (p) => plane && Math.abs(dot(sum(p, points[0], -1), plane)) < this.sizes.thick;
+    if (plane) {
+      const offset = this.offset(link, plane), flat = points.concat(grasps.filter(beside));
+      this.addPlate(solid, flat, plane, offset);
+      const hub = sum(middleOf(points), plane, offset);
+      for (const point of grasps) if (!beside(point)) solid.rod(hub, point, 0.6 * this.sizes.rod);
+    } else {
+      this.addFrame(solid, link, points.concat(grasps), joints);
+    }
   }
 
-  // Points in a plane: a rounded plate; otherwise rods.
-  addFrame(solid, link, points) {
+  // Rods between the points.
+  addFrame(solid, link, points, joints) {
     const centre = this.scene.links[link].centre || [0, 0, 0];
     if (points.length === 0) {
       solid.sphere(centre, 2.2 * this.sizes.rod);
     } else if (points.length === 1) {
-      this.addSingle(solid, points[0], centre);
+      // A sliding joint shows its links well enough.
+      if (!joints.some((contact) => kSliding.includes(contact.type))) {
+        this.addSingle(solid, points[0], centre);
+      }
     } else if (points.length === 2) {
       solid.rod(points[0], points[1], this.sizes.rod);
     } else {
-      const normal = planeOf(points, this.sizes.rod);
-      if (normal) this.addPlate(solid, points, normal, 0);
-      else this.addSpokes(solid, points);
+      this.addSpokes(solid, points);
     }
   }
 
@@ -69,11 +84,12 @@ class Shapes {
   }
 
   addSpokes(solid, points) {
-    const hub = points.reduce((a, p) => sum(a, p, 1 / points.length), [0, 0, 0]);
+    const hub = middleOf(points);
     for (const point of points) solid.rod(point, hub, this.sizes.rod);
     solid.sphere(hub, 1.6 * this.sizes.rod);
   }
 
+  // One or two points make a bar; more make a frame along their hull with a thin web in it.
   addPlate(solid, points, normal, offset) {
     const {bar, thick} = this.sizes;
     const mean = points.reduce((a, p) => a + dot(p, normal) / points.length, 0);
@@ -81,7 +97,14 @@ class Shapes {
     const flat = points.map((p) => [dot(p, x), dot(p, y)]);
     const matrix = new THREE.Matrix4().makeBasis(vectorOf(x), vectorOf(y), vectorOf(normal))
         .setPosition(vectorOf(normal).multiplyScalar(mean + offset));
-    solid.plate(flat, bar, thick, matrix);
+    const hull = convexHull(flat, 1e-3 * bar);
+    if (hull.length < 3) {
+      solid.plate(flat, bar, thick, matrix);
+      return;
+    }
+    solid.plate(hull, 0.1 * bar, 0.3 * thick, matrix);
+    hull.forEach((p, k) => solid.plate([p, hull[(k + 1) % hull.length]], 0.6 * bar, thick, matrix));
+    for (const p of flat) solid.plate([p], bar, 1.02 * thick, matrix);
   }
 
   // Ground: a plate under anchors in a plane of their own, else a foot below each.
@@ -90,12 +113,24 @@ class Shapes {
     const points = apartFrom(contacts.map((contact) => contact.point), this.sizes.rod);
     const plane = points.length > 2 && !normal ? planeOf(points, this.sizes.rod) : null;
     if (plane) {
-      this.addPlate(solid, points, plane, 0);
+      this.addBase(solid, points, dot(plane, this.up) < 0 ? plane.map((v) => -v) : plane);
       return;
     }
     for (const contact of contacts) {
       if (contact.type === "prismatic" || contact.type === "grasp") continue;
       this.addFoot(solid, contact, normal ? this.offset(link, contact.axis) : 0);
+    }
+  }
+
+  // A slab below the anchors with a short post to each.
+  addBase(solid, points, normal) {
+    const {bar, thick, rod} = this.sizes, deep = 2.6 * bar;
+    const x = acrossFrom(normal), y = cross(normal, x), height = dot(points[0], normal);
+    const matrix = new THREE.Matrix4().makeBasis(vectorOf(x), vectorOf(y), vectorOf(normal))
+        .setPosition(vectorOf(normal).multiplyScalar(height - deep));
+    solid.plate(points.map((p) => [dot(p, x), dot(p, y)]), 1.9 * bar, thick, matrix);
+    for (const point of points) {
+      solid.cylinder(sum(point, normal, -deep), sum(point, normal, -1.2 * rod), 1.3 * bar, 0.7 * bar);
     }
   }
 
@@ -126,6 +161,10 @@ function vectorOf(p) {
 function upOf(scene) {
   const gravity = scene.gravity || [0, 0, 0];
   return lengthOf(gravity) > 0 ? unit(gravity).map((value) => -value) : [0, 0, 1];
+}
+
+function middleOf(points) {
+  return points.reduce((a, p) => sum(a, p, 1 / points.length), [0, 0, 0]);
 }
 
 // The points without those that are nearer than `least` to an earlier one.

@@ -1,5 +1,7 @@
 // The page's state and who is told of its changes: what is shown now, picked and hovered.
 
+const kToolsHeight = 46;  // pixels of the picture under its tools
+
 class View {
   constructor(root, scene) {
     this.root = root;
@@ -81,7 +83,8 @@ class View {
   }
 
   fit() {
-    this.stage.eye.fit(this.swept, 0.11 * this.shapes.sizes.length);
+    const covered = Math.min(0.3, kToolsHeight / this.stage.canvas.clientHeight);
+    this.stage.eye.fit(this.swept, 0.05 * this.shapes.sizes.length, covered);
     this.looked();
   }
 
