@@ -1,0 +1,122 @@
+// The mechanism as nodes of three.js: one per link, with its body and its halves of the joints.
+
+class MechanismNodes {
+  constructor(scene, shapes) {
+    this.scene = scene;
+    this.shapes = shapes;
+    this.root = new THREE.Group();
+    this.parts = [];         // meshes that can be picked; userData {kind, index, link}
+    this.triangles = 0;
+    this.links = scene.links.map((link, index) => this.addLink(link, index));
+    const symbols = new JointSymbols(shapes);
+    this.joints = scene.joints.map((_, index) => this.addJoint(symbols, index));
+    this.root.traverse((object) => {
+      if (object.isMesh) this.triangles += object.geometry.attributes.position.count / 3;
+    });
+  }
+
+  addLink(link, index) {
+    const node = new THREE.Group();
+    this.root.add(node);
+    const geometry = this.shapes.geometryOf(index);
+    if (geometry) {
+      const colour = linkColour(this.scene, index);
+      node.add(this.addPart(geometry, colour, {kind: "link", index: index, link: index}));
+    }
+    return node;
+  }
+
+  addJoint(symbols, index) {
+    const joint = this.scene.joints[index], solids = symbols.solidsOf(index), meshes = [];
+    const add = (solid, link, colour) => {
+      if (solid.empty) return;
+      const mesh = this.addPart(solid.geometry(), colour, {kind: "joint", index: index, link: link});
+      this.links[link].add(mesh);
+      meshes.push(mesh);
+    };
+    add(solids.first, joint.first.link, linkColour(this.scene, joint.first.link));
+    add(solids.second, joint.second.link, linkColour(this.scene, joint.second.link));
+    add(solids.steel, joint.first.link, kSteelColour);
+    return meshes;
+  }
+
+  addPart(geometry, colour, userData) {
+    const material = new THREE.MeshStandardMaterial({
+      color: shade(colour), roughness: 0.62, metalness: 0.05});
+    const mesh = new THREE.Mesh(geometry, material);
+    mesh.castShadow = mesh.receiveShadow = true;
+    mesh.userData = userData;
+    this.parts.push(mesh);
+    return mesh;
+  }
+
+  setPoses(poses) {
+    poseNodes(this.links, poses);
+  }
+
+  // Lights up a link or joint, and reddens joints at a limit.
+  highlight(hovered, picked, atLimit) {
+    for (const mesh of this.parts) {
+      const own = mesh.userData;
+      const is = (what) => what && what.kind === own.kind && what.index === own.index;
+      const limit = own.kind === "joint" && atLimit.includes(own.index);
+      mesh.material.emissive.setHex(limit ? 0xc02018 : is(hovered) || is(picked) ? 0x4a5a6a : 0);
+      mesh.material.emissiveIntensity = limit ? 0.8 : is(hovered) ? 0.75 : 0.45;
+    }
+  }
+
+  // A pale copy of the mechanism, for a comparison with another assembly mode.
+  makeGhost() {
+    const ghost = new THREE.Group();
+    const material = new THREE.MeshStandardMaterial({color: shade(0x8090a0), transparent: true,
+      opacity: 0.28, depthWrite: false, roughness: 1});
+    for (const node of this.links) {
+      const copy = new THREE.Group();
+      for (const mesh of node.children) {
+        if (mesh.userData.kind) copy.add(new THREE.Mesh(mesh.geometry, material));
+      }
+      ghost.add(copy);
+    }
+    ghost.setPoses = (poses) => poseNodes(ghost.children, poses);
+    return ghost;
+  }
+}
+
+function poseNodes(nodes, poses) {
+  for (let i = 0, at = 0; i < nodes.length; ++i, at += 7) {
+    nodes[i].position.set(poses[at], poses[at + 1], poses[at + 2]);
+    nodes[i].quaternion.set(poses[at + 4], poses[at + 5], poses[at + 6], poses[at + 3]);
+  }
+}
+
+// Points that the view should hold in axes of their links: anchors, grasps, corners of what is drawn.
+function pointsToFit(scene, nodes) {
+  return scene.links.map((link, index) => {
+    const points = link.anchors.map((anchor) => anchor.pose.slice(0, 3));
+    points.push(...scene.grasps.filter((grasp) => grasp.link === index)
+        .map((grasp) => grasp.pose.slice(0, 3)));
+    for (const body of nodes.links[index].children.filter((mesh) => mesh.userData.kind)) {
+      body.geometry.computeBoundingBox();
+      const {min, max} = body.geometry.boundingBox;
+      for (const x of [min.x, max.x]) {
+        for (const y of [min.y, max.y]) for (const z of [min.z, max.z]) points.push([x, y, z]);
+      }
+    }
+    if (!points.length && link.centre) points.push(link.centre);
+    return points;
+  });
+}
+
+// Those points in the world, over the whole motion.
+function sweptPoints(scene, nodes) {
+  const local = pointsToFit(scene, nodes), swept = [], motion = scene.motion;
+  const add = (poses, row) => local.forEach((points, link) => {
+    for (const p of points) swept.push(place(poses, (row + link) * 7, p, [0, 0, 0]));
+  });
+  add(scene.start.poses.flat(), 0);
+  if (motion) {
+    const step = Math.max(1, Math.floor(motion.count / 48));
+    for (let i = 0; i < motion.count; i += step) add(motion.poses, i * motion.links);
+  }
+  return swept.filter((p) => p.every(Number.isFinite));
+}
