@@ -8,7 +8,8 @@
 namespace vmech {
 namespace {
 
-constexpr double kParallel = 1e-6;  // [rad]
+constexpr double kParallel = 1e-6;   // [rad]
+constexpr double kRounding = 1e-12;  // [rad]: what turns of a cycle differ by
 
 /// The joints of the loop in their order: ground - input - coupler - output - ground.
 struct FourJoints {
@@ -119,7 +120,7 @@ std::optional<TransmissionAngle> FindTransmissionAngle(const LoadStudy& study,
   for (const PoseLoads& pose : result.poses) {
     found.angles.push_back(PlanarLoop(mechanism, *loop, pose).TransmissionAngle());
     const double least = found.angles[found.least_pose];
-    if (found.angles.back() < least || std::isnan(least)) {
+    if (found.angles.back() < least - kRounding || std::isnan(least)) {
       found.least_pose = found.angles.size() - 1;
     }
   }
