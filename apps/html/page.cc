@@ -65,6 +65,10 @@ Markup Details(const Markup& summary, const Markup& content) {
   return Element("details", Element("summary", summary) + content) + Markup::Raw("\n");
 }
 
+Markup ScreenDetails(const Markup& summary, const Markup& content) {
+  return Element("details", Element("summary", summary) + content, "screen") + Markup::Raw("\n");
+}
+
 Markup Figure(const Markup& drawing, const Markup& caption) {
   return Element("figure", caption.empty() ? drawing : drawing + Element("figcaption", caption)) +
          Markup::Raw("\n");

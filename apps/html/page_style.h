@@ -90,10 +90,14 @@ footer { margin-top: 4rem; padding-top: 1rem; border-top: 1px solid var(--line);
   html { font-size: 10pt; color-scheme: light; }
   main { max-width: none; padding: 0; }
   th { position: static; }
-  h2 { margin-top: 1.6rem; }
-  h3 { margin-top: 1.2rem; }
+  h2 { margin-top: 1.4rem; }
+  h3 { margin-top: 0.9rem; }
+  table { margin: 0.5rem 0 0.8rem; }
+  th, td { padding: 0.18rem 0.5rem; }
+  details { margin: 0.4rem 0; }
+  details.screen { display: none; }
   h2, h3, h3 + p, caption, thead, summary { break-after: avoid; }
-  figure, tr, li, .tile, .notice { break-inside: avoid; }
+  figure, .figures, tr, li, .tile, .notice { break-inside: avoid; }
   p, li { orphans: 3; widows: 3; }
   .figures { zoom: 0.68; }
   details > * { display: block; }

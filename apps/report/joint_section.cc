@@ -222,7 +222,7 @@ Markup JointSection(const LoadStudy& study, const LoadStudyResult& result, const
     largest = std::max(largest, pose.joints[index].moment.cwiseAbs().maxCoeff());
   }
   if (largest > negligible) {
-    details += html::Figure(plot::Draw(MomentPlot(result, cycle, index)));
+    details += html::FigureRow({html::Figure(plot::Draw(MomentPlot(result, cycle, index)))});
   }
   section += html::Details("All six components", details);
   return section + OwnCoordinatePlots(study, result, force, index);

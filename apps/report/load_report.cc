@@ -299,9 +299,9 @@ Markup MethodSection(const Report& report, const Cycle& cycle) {
         fmt::format("Minimum norm weighs moments against forces by a length of {} mm.",
                     Number(result.norm_length * 1e3)));
   }
-  section += html::Figure(plot::Draw(PosePlot(result, cycle, "Error of the power balance",
-                                              {"error, relative", ""}, &PoseLoads::power_error)));
-  return section;
+  return section + html::FigureRow({html::Figure(
+                       plot::Draw(PosePlot(result, cycle, "Error of the power balance",
+                                           {"error, relative", ""}, &PoseLoads::power_error)))});
 }
 
 Markup Footer(const Report& report) {
