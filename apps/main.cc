@@ -40,6 +40,7 @@ constexpr const char* kLoadsHelp =
     "components are certain, and the bearings that will carry it:\n"
     "  loads.csv      joint wrenches and drive forces at every pose\n"
     "  motion.csv     pose, velocity and acceleration of every link\n"
+    "  joints.csv     coordinate, rate and acceleration of every freedom of every joint\n"
     "  certainty.csv  what statics determines and what it does not\n"
     "  bearings.csv   the bearing chosen at every position\n"
     "  summary.json   the figures that matter, for programs\n"

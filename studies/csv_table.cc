@@ -126,8 +126,4 @@ CsvTable ParseCsvTable(std::string_view text, const std::string& name) {
   return TableParser(name).Parse(text);
 }
 
-CsvTable ReadCsvTable(const std::filesystem::path& path) {
-  return ParseCsvTable(ReadTextFile(path, kMaxTableBytes), path.string());
-}
-
 }  // namespace vmech

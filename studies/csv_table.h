@@ -33,6 +33,5 @@ std::string CsvCell(std::string_view text);
 
 /// @throws FileErrors with everything that is wrong. `name` stands for the file in messages.
 CsvTable ParseCsvTable(std::string_view text, const std::string& name);
-CsvTable ReadCsvTable(const std::filesystem::path& path);
 
 }  // namespace vmech

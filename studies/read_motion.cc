@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "vmech/mechanisms/freedoms.h"
+#include "vmech/studies/sha256.h"
 
 namespace vmech {
 namespace {
@@ -249,7 +250,9 @@ CsvTable ReadTable(const Node& node, const std::filesystem::path& folder) {
   const std::string name = node.Text();
   if (node.kind() != Node::Kind::kScalar) return {};
   try {
-    return ReadCsvTable(folder / name);
+    const std::string text = ReadTextFile(folder / name, kMaxTableBytes);
+    node.document().NoteNamedFile({folder / name, Sha256(text)});
+    return ParseCsvTable(text, (folder / name).string());
   } catch (const FileErrors& errors) {
     for (const FileError& error : errors.errors()) node.document().Report(error);
   }

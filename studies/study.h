@@ -18,6 +18,12 @@ struct BearingRequest {
   BearingRequirements requirements;
 };
 
+/// A file that a study was read from.
+struct InputFile {
+  std::filesystem::path path;
+  std::string sha256;  ///< of its bytes, as Sha256
+};
+
 /// A study file as read: what to compute, and what is asked of the result.
 struct StudyFile {
   std::filesystem::path path;
@@ -29,6 +35,8 @@ struct StudyFile {
   std::vector<BearingRequest> bearings;
   std::vector<Bearing> catalogue;       ///< the built-in one unless the file names another
   std::vector<std::string> notes = {};  ///< what the file says in a manner that is no longer used
+  /// The study itself, its mechanism, its tables and its catalogue, each once, as they were read.
+  std::vector<InputFile> inputs = {};
 };
 
 /// What came out for the bearings of one joint.

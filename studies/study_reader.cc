@@ -12,6 +12,7 @@
 #include "vmech/mechanisms/files/reader.h"
 #include "vmech/mechanisms/freedoms.h"
 #include "vmech/studies/read_motion.h"
+#include "vmech/studies/sha256.h"
 
 namespace vmech {
 namespace {
@@ -26,7 +27,9 @@ bool ReadNamedMechanism(const Node& node, const std::filesystem::path& folder, S
   if (name.empty()) return false;
   file->mechanism_path = folder / name;
   try {
-    file->study.mechanism = ReadMechanism(file->mechanism_path);
+    const std::string text = ReadTextFile(file->mechanism_path);
+    node.document().NoteNamedFile({file->mechanism_path, Sha256(text)});
+    file->study.mechanism = ParseMechanism(text, file->mechanism_path.string());
     return true;
   } catch (const FileErrors& errors) {
     for (const FileError& error : errors.errors()) node.document().Report(error);
@@ -240,11 +243,27 @@ void ReadReferences(const Node& root, const std::filesystem::path& folder, Study
 std::vector<Bearing> ReadNamedCatalogue(const Node& node, const std::filesystem::path& folder) {
   if (!node) return BuiltInCatalogue();
   try {
-    return ReadCatalogue((folder / node.Text()).string());
+    const std::filesystem::path path = folder / node.Text();
+    std::vector<Bearing> catalogue = ReadCatalogue(path.string());
+    node.document().NoteNamedFile({path, Sha256(ReadTextFile(path))});
+    return catalogue;
   } catch (const std::runtime_error& defect) {
     node.Error(defect.what());
   }
   return {};
+}
+
+/// The study's own text and the files that it names, each once.
+std::vector<InputFile> InputsOf(std::string_view text, const std::filesystem::path& path,
+                                const Document& document) {
+  std::vector<InputFile> inputs = {{path, Sha256(text)}};
+  for (const Document::NamedFile& named : document.named_files()) {
+    const bool known = std::any_of(inputs.begin(), inputs.end(), [&](const InputFile& input) {
+      return input.path == named.path;
+    });
+    if (!known) inputs.push_back({named.path, named.digest});
+  }
+  return inputs;
 }
 
 void CheckVersion(const Node& version) {
@@ -279,6 +298,7 @@ StudyFile ParseStudy(std::string_view text, const std::filesystem::path& path) {
   }
   document.ThrowErrors();
   file.motion = MotionInWords(root["motion"], file.study);
+  file.inputs = InputsOf(text, path, document);
   file.notes = NotesOnFreedoms(root["motion"], file.study);
   return file;
 }

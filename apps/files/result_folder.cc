@@ -33,7 +33,8 @@ struct KindOfResult {
 const KindOfResult& Describe(ResultKind kind) {
   static const KindOfResult kKinds[] = {
       {"vmech loads",
-       {"loads.csv", "motion.csv", "certainty.csv", "bearings.csv", "summary.json", "report.html"},
+       {"loads.csv", "motion.csv", "joints.csv", "certainty.csv", "bearings.csv", "summary.json",
+        "report.html"},
        nullptr},
       {"vmech compare", {"results.csv", "summary.json", "report.html"}, "rows.jsonl"},
   };

@@ -65,6 +65,10 @@ Markup Details(const Markup& summary, const Markup& content) {
   return Element("details", Element("summary", summary) + content) + Markup::Raw("\n");
 }
 
+Markup ScreenDetails(const Markup& summary, const Markup& content) {
+  return Element("details", Element("summary", summary) + content, "screen") + Markup::Raw("\n");
+}
+
 Markup Figure(const Markup& drawing, const Markup& caption) {
   return Element("figure", caption.empty() ? drawing : drawing + Element("figcaption", caption)) +
          Markup::Raw("\n");
@@ -90,7 +94,7 @@ Markup Tiles(const std::vector<Tile>& tiles) {
 }
 
 Markup RenderTable(const Table& table) {
-  std::string html = "<table>";
+  std::string html = "<div class=\"scroll\"><table>";
   if (!table.caption.empty()) html += Element("caption", table.caption).html();
   std::vector<Markup> headers;
   for (const Column& column : table.columns) headers.push_back(column.header);
@@ -104,7 +108,7 @@ Markup RenderTable(const Table& table) {
     }
     AppendRow("td", table, row, &html);
   }
-  return Markup::Raw(html + "</tbody></table>\n");
+  return Markup::Raw(html + "</tbody></table></div>\n");
 }
 
 std::string RenderPage(std::string_view title, const Markup& body, std::string_view style) {

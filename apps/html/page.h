@@ -25,6 +25,8 @@ Markup Badge(const Markup& word, Tone tone);
 Markup Notice(const Markup& content, Tone tone);
 /// Content that is folded away under its summary; printed open.
 Markup Details(const Markup& summary, const Markup& content);
+/// The same, not printed: long lists to look things up in.
+Markup ScreenDetails(const Markup& summary, const Markup& content);
 Markup Figure(const Markup& drawing, const Markup& caption = {});
 /// Figures side by side where the page is wide enough (it is 1008 CSS pixels), with gaps of 24.
 Markup FigureRow(const std::vector<Markup>& figures);

@@ -75,14 +75,33 @@ details { margin: 0.6rem 0 1rem; }
 summary { cursor: pointer; color: var(--accent); }
 footer { margin-top: 4rem; padding-top: 1rem; border-top: 1px solid var(--line);
   color: var(--muted); font-size: 0.85rem; }
+@media screen and (max-width: 66rem) { .scroll, figure { overflow-x: auto; } }
+@media screen and (max-width: 36rem) {
+  main { padding: 1.3rem 0.9rem 3rem; }
+  h1 { font-size: 1.55rem; overflow-wrap: anywhere; }
+  h2 { margin-top: 2.2rem; }
+  ul, ol { padding-left: 1.3rem; }
+  .tiles { grid-template-columns: repeat(auto-fit, minmax(9rem, 1fr)); gap: 0.6rem; }
+  .tile { padding: 0.7rem 0.8rem; overflow-wrap: anywhere; }
+  .tile .value { font-size: 1.35rem; }
+  figure svg[width="660"] { max-width: none; width: 32rem; } }
 @media print {
   :root { --paper: #ffffff; --panel: #f6f7f9; --ink: #000000; --muted: #444444; --line: #bbbbbb; }
   html { font-size: 10pt; color-scheme: light; }
   main { max-width: none; padding: 0; }
   th { position: static; }
-  h2, h3 { break-after: avoid; }
-  figure, tr, .tile, .notice { break-inside: avoid; }
+  h2 { margin-top: 1.4rem; }
+  h3 { margin-top: 0.9rem; }
+  table { margin: 0.5rem 0 0.8rem; }
+  th, td { padding: 0.18rem 0.5rem; }
+  details { margin: 0.4rem 0; }
+  details.screen { display: none; }
+  h2, h3, h3 + p, caption, thead, summary { break-after: avoid; }
+  figure, .figures, tr, li, .tile, .notice { break-inside: avoid; }
+  p, li { orphans: 3; widows: 3; }
+  .figures { zoom: 0.68; }
   details > * { display: block; }
+  details::details-content { content-visibility: visible; }
   @page { margin: 16mm 14mm; }
 }
 )css";

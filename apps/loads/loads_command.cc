@@ -14,6 +14,7 @@
 #include "vmech/apps/report/cycle.h"
 #include "vmech/apps/report/joint_section.h"
 #include "vmech/apps/report/load_report.h"
+#include "vmech/apps/report/report_date.h"
 #include "vmech/base/number_text.h"
 #include "vmech/dynamics/bearings/rating.h"
 #include "vmech/dynamics/loads/load_result.h"
@@ -141,6 +142,7 @@ int RunLoads(const LoadsArguments& arguments) {
   if (arguments.tolerance) file.study.mechanism.tolerance = *arguments.tolerance;
   LoadStudyOptions options;
   options.threads = Threads(arguments);
+  const std::string date = ReportDate();
   const std::filesystem::path by_name = arguments.study.stem().string() + "-loads";
   ResultFolder folder(arguments.out.empty() ? by_name : arguments.out, ResultKind::kLoads);
   StudyOutcome outcome;
@@ -156,9 +158,10 @@ int RunLoads(const LoadsArguments& arguments) {
   // Rendered while the tables are written, each of which waits for the disk.
   const std::launch how = options.threads > 1 ? std::launch::async : std::launch::deferred;
   std::future<std::string> report =
-      std::async(how, [&] { return RenderLoadReport(file, outcome, VMECH_VERSION); });
+      std::async(how, [&] { return RenderLoadReport(file, outcome, VMECH_VERSION, date); });
   folder.Write("loads.csv", LoadsTable(file, outcome.loads, options.threads));
   folder.Write("motion.csv", MotionTable(file, outcome.loads, options.threads));
+  folder.Write("joints.csv", JointsTable(file, outcome.loads, options.threads));
   folder.Write("certainty.csv", CertaintyTable(file, outcome.loads));
   folder.Write("bearings.csv", BearingsTable(file, outcome));
   folder.Write("summary.json", SummaryJson(file, outcome));

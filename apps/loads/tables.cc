@@ -152,6 +152,27 @@ std::string MotionTable(const StudyFile& file, const LoadStudyResult& result, in
          });
 }
 
+std::string JointsTable(const StudyFile& file, const LoadStudyResult& result, int threads) {
+  std::string header = "t";
+  for (const Joint& joint : file.study.mechanism.joints) {
+    for (int k = 0; k < FreedomsOf(joint.type); ++k) {
+      for (const char* column : {"position", "rate", "acceleration"}) {
+        header += "," + CsvCell(NameOfFreedom(joint, k) + "." + column);
+      }
+    }
+  }
+  const LoadArrays& loads = result.poses.arrays();
+  return header + "\n" + WriteRows(result.poses.size(), threads, [&](size_t i, Row* row) {
+           row->Add(loads.times[i]);
+           const size_t first = i * loads.freedom_count();
+           for (size_t k = first; k < first + loads.freedom_count(); ++k) {
+             row->Add(loads.positions[k]);
+             row->Add(loads.rates[k]);
+             row->Add(loads.accelerations[k]);
+           }
+         });
+}
+
 std::string CertaintyTable(const StudyFile& file, const LoadStudyResult& result) {
   std::string text = "joint,component,verdict\n";
   for (size_t j = 0; j < result.certainty.size(); ++j) {

@@ -21,6 +21,11 @@ std::string LoadsTable(const StudyFile& file, const LoadStudyResult& result, int
 /// velocity, acceleration, angular acceleration; world axes.
 std::string MotionTable(const StudyFile& file, const LoadStudyResult& result, int threads);
 
+/// t; <freedom>.position, .rate, .acceleration of every freedom of every joint, named as
+/// NameOfFreedom names it. Of a spherical joint the position is the rotation vector of its second
+/// anchor in the first, rate and acceleration those of its angular velocity, axes of the second.
+std::string JointsTable(const StudyFile& file, const LoadStudyResult& result, int threads);
+
 /// joint, component, verdict.
 std::string CertaintyTable(const StudyFile& file, const LoadStudyResult& result);
 

@@ -32,10 +32,27 @@ void AppendColumn(const std::vector<Point>& points, std::size_t begin, std::size
   }
 }
 
+/// Leaves out points that are nearer to the last kept one than can be seen.
+std::vector<Point> ThinOut(const std::vector<Point>& points, double near) {
+  std::vector<Point> kept;
+  kept.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Point& p = points[i];
+    const bool ends = i == 0 || i + 1 == points.size() || !Finite(points[i + 1]);
+    if (!ends && Finite(p) && Finite(kept.back()) &&
+        std::hypot(p.x - kept.back().x, p.y - kept.back().y) < near) {
+      continue;
+    }
+    kept.push_back(p);
+  }
+  return kept;
+}
+
 }  // namespace
 
 std::vector<Point> Decimate(std::vector<Point> points, double column) {
-  if (points.size() < 3 || !RunsForward(points)) return points;
+  if (points.size() < 3) return points;
+  if (!RunsForward(points)) return ThinOut(points, column / 2);
   std::vector<Point> kept;
   kept.reserve(points.size());
   for (std::size_t begin = 0; begin < points.size();) {

@@ -77,6 +77,41 @@ double PlaceLegend(const LinePlot& plot, double caption, Layout* layout) {
   return beside ? 0 : at.y + kRow - layout->caption_baseline;
 }
 
+/// Room for the labels of the y axis, left of the frame.
+void MakeRoomForTicks(Layout* layout) {
+  layout->left = 0;
+  for (const Tick& tick : layout->y.ticks) {
+    layout->left = std::max(layout->left, TextWidth(tick.label, kFont) + 9);
+  }
+}
+
+int TicksFor(double length, double pixels_per_tick) {
+  return static_cast<int>(std::max(2.0, length / pixels_per_tick));
+}
+
+/// A scale with the same middle on which `length` drawing units show `range`.
+Scale Recentred(const Scale& scale, double range, double length, double pixels_per_tick) {
+  const double middle = 0.5 * (scale.lower + scale.upper);
+  return MakeScale(ScaleType::kLinear, middle - 0.5 * range, middle + 0.5 * range,
+                   TicksFor(length, pixels_per_tick), false);
+}
+
+/// The same length for a unit on both axes, with some room around the data.
+void EqualiseScales(Layout* layout) {
+  constexpr double kRoom = 1.1;
+  const Scale x = layout->x, y = layout->y;
+  for (int pass = 0; pass < 2; ++pass) {  // the second with the room that the new labels take
+    const double width = layout->right - layout->left, height = layout->bottom - layout->top;
+    const double unit = kRoom * std::max((x.upper - x.lower) / width, (y.upper - y.lower) / height);
+    layout->x = Recentred(x, unit * width, width, kPixelsPerTickX);
+    layout->y = Recentred(y, unit * height, height, kPixelsPerTickY);
+    MakeRoomForTicks(layout);
+  }
+  const double width = layout->right - layout->left, height = layout->bottom - layout->top;
+  layout->x =
+      Recentred(x, (layout->y.upper - layout->y.lower) / height * width, width, kPixelsPerTickX);
+}
+
 Layout Arrange(const LinePlot& plot) {
   std::vector<const std::vector<double>*> xs, ys;
   for (const Series& series : plot.series) xs.push_back(&series.x), ys.push_back(&series.y);
@@ -89,17 +124,14 @@ Layout Arrange(const LinePlot& plot) {
   layout.bottom = plot.height - 42;
   layout.caption_baseline = kTitleBaseline + (plot.title.empty() ? 0 : kRow);
   const int y_ticks = static_cast<int>(std::max(2.0, (layout.bottom - 50) / kPixelsPerTickY));
-  layout.y = ScaleOf(plot.y, ys, y_ticks, true);
-  for (const Tick& tick : layout.y.ticks) {
-    layout.left = std::max(layout.left, TextWidth(tick.label, kFont) + 9);
-  }
-  const int x_ticks =
-      static_cast<int>(std::max(2.0, (layout.right - layout.left) / kPixelsPerTickX));
-  layout.x = ScaleOf(plot.x, xs, x_ticks, false);
+  layout.y = ScaleOf(plot.y, ys, y_ticks, !plot.equal_scales);
+  MakeRoomForTicks(&layout);
+  layout.x = ScaleOf(plot.x, xs, TicksFor(layout.right - layout.left, kPixelsPerTickX), false);
 
   layout.caption_baseline +=
       PlaceLegend(plot, TextWidth(Caption(plot.y, layout.y), kFont), &layout);
   layout.top = layout.caption_baseline + 14;
+  if (plot.equal_scales) EqualiseScales(&layout);
   return layout;
 }
 
@@ -204,6 +236,16 @@ void DrawPeaks(const LinePlot& plot, const Layout& layout, SvgWriter* svg) {
   }
 }
 
+void DrawLandmarks(const LinePlot& plot, const Layout& layout, SvgWriter* svg) {
+  LabelPlacer placer({layout.left, layout.top - 14}, {plot.width, layout.bottom});
+  for (const Landmark& mark : plot.landmarks) {
+    const Point at = layout.At(mark.x, mark.y);
+    if (!std::isfinite(at.x) || !std::isfinite(at.y)) continue;
+    svg->Circle("dot f1", at, 3.6);
+    placer.Place(at, mark.label, svg);
+  }
+}
+
 void DrawLevels(const LinePlot& plot, const Layout& layout, SvgWriter* svg) {
   for (const Level& level : plot.levels) {
     const double y = layout.At(layout.x.lower, level.y).y;
@@ -249,6 +291,7 @@ html::Markup Draw(const LinePlot& plot) {
   DrawLevels(plot, layout, &svg);
   DrawStations(plot, layout, &svg);
   if (!clipped) DrawPeaks(plot, layout, &svg);
+  DrawLandmarks(plot, layout, &svg);
   return std::move(svg).Finish();
 }
 

@@ -41,6 +41,12 @@ struct Station {
   std::string label;
 };
 
+/// A point of the plot that is marked by a dot, such as "90°" of the crank on a path.
+struct Landmark {
+  double x = 0, y = 0;
+  std::string label;
+};
+
 /// Curves over a common axis.
 struct LinePlot {
   std::string title;
@@ -51,6 +57,10 @@ struct LinePlot {
   double width = 660;  ///< natural size [CSS pixels]
   double height = 290;
   std::vector<Station> stations = {};
+  std::vector<Landmark> landmarks = {};
+  /// A unit is as long upwards as to the right, as on a map; then both axes are linear and show
+  /// more than their data where the frame asks for it.
+  bool equal_scales = false;
 };
 
 /// Draws the plot (style: style.h). The same plot gives the same bytes.

@@ -159,10 +159,10 @@ Markup JointSection(const LoadStudy& study, const BearingRequest& request,
   }
   section += Warnings(bearings);
   for (size_t i = 0; i < bearings.selections.size(); ++i) {
-    section +=
-        html::Details(fmt::format("Why not another bearing at {} mm",
-                                  plot::FormatShort(request.arrangement.positions[i] * 1e3, 3)),
-                      PassedOver(bearings.selections[i]));
+    section += html::ScreenDetails(
+        fmt::format("Why not another bearing at {} mm",
+                    plot::FormatShort(request.arrangement.positions[i] * 1e3, 3)),
+        PassedOver(bearings.selections[i]));
   }
   return section;
 }

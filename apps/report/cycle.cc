@@ -97,6 +97,14 @@ std::string Cycle::At(size_t pose) const {
          (before >= 1 ? fmt::format(", turn {:.0f}", before + 1) : "");
 }
 
+std::string Cycle::AtTime(double time) const {
+  if (drive.empty()) return plot::FormatShort(time, 4) + " s";
+  const double position = drive.At(time).position;
+  if (axis.unit != kDegree) return plot::FormatShort(1e3 * position, 4) + " mm";
+  const double tenths = std::round(10 * kDegreesPerRadian * position);
+  return plot::FormatNumber((tenths - 3600 * std::floor(tenths / 3600)) / 10, 1) + "°";
+}
+
 std::string Cycle::DeadCentreNear(size_t pose) const {
   if (values.size() < 2) return "";
   const double step = std::abs(values[1] - values[0]);
@@ -117,6 +125,7 @@ Cycle CycleOf(const LoadStudy& study, const LoadStudyResult& result) {
         (rotation ? "angle of " : "travel of ") + NameOfFreedom(joint, drive.freedom);
     cycle.axis.unit = rotation ? kDegree : "mm";
     cycle.axis.scale = rotation ? plot::ScaleType::kDegrees : plot::ScaleType::kLinear;
+    cycle.drive = drive.law;
     const double unit = rotation ? kDegreesPerRadian : 1e3;
     for (const PoseLoads& pose : result.poses) {
       cycle.values.push_back(pose.drives[0].position * unit);

@@ -7,6 +7,7 @@
 #include "vmech/apps/plot/polar_plot.h"
 #include "vmech/dynamics/loads/load_result.h"
 #include "vmech/dynamics/loads/load_study.h"
+#include "vmech/kinematics/motion/motion_law.h"
 
 namespace vmech {
 
@@ -18,9 +19,12 @@ struct Cycle {
   std::vector<plot::PathMark> marks;  ///< four poses to be named in polar diagrams
 
   std::vector<plot::Station> dead_centres = {};  ///< on the axis
+  MotionLaw drive = {};  ///< whose coordinate the axis shows; empty where that is time
 
   /// The value at a pose with its unit, "215°"; angles within their turn, "15°, turn 2".
   std::string At(size_t pose) const;
+  /// The same at a time between poses, to a tenth of a degree, without the number of the turn.
+  std::string AtTime(double time) const;
   /// "dead centre" if one is nearer to the pose than to its neighbours; else empty.
   std::string DeadCentreNear(size_t pose) const;
 };

@@ -5,11 +5,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 #include "vmech/apps/html/page.h"
+#include "vmech/apps/loads/dead_centres.h"
 #include "vmech/apps/report/certainty_words.h"
 #include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/motion/freedom_range.h"
 #include "vmech/dynamics/loads/open_components.h"
+#include "vmech/mechanisms/freedoms.h"
 
 namespace vmech {
 namespace {
@@ -56,6 +61,65 @@ plot::LinePlot ForcePlot(const LoadStudy& study, const LoadStudyResult& result, 
   plot.y = {"force", "N"};
   plot.series = {std::move(radial), std::move(axial)};
   return plot;
+}
+
+/// A coordinate in degrees or millimetres. Where it turns on and on it is counted within its turn,
+/// and nothing stands at the step from a turn to the next, so that curves break off there.
+std::vector<double> CoordinateAxis(const LoadStudyResult& result, size_t joint, size_t freedom,
+                                   bool turns) {
+  constexpr double kWholeTurn = 360;
+  const LoadArrays& loads = result.poses.arrays();
+  const size_t offset = static_cast<size_t>(loads.first_freedom[joint]) + freedom;
+  const double unit = turns ? 180 / std::numbers::pi : 1e3;
+  std::vector<double> values;
+  for (size_t i = 0; i < loads.pose_count(); ++i) {
+    values.push_back(unit * loads.positions[i * loads.freedom_count() + offset]);
+  }
+  const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
+  if (!turns || *greatest - *least < kWholeTurn) return values;
+  double before = 0;
+  for (size_t i = 0; i < values.size(); ++i) {
+    const double turn = std::floor(values[i] / kWholeTurn);
+    values[i] -= kWholeTurn * turn;
+    if (i > 0 && turn != before) values[i] = NAN;
+    before = turn;
+  }
+  return values;
+}
+
+/// The load over a freedom of the joint itself, where that moves and is not what all plots run
+/// over.
+Markup OwnCoordinatePlots(const LoadStudy& study, const LoadStudyResult& result,
+                          const plot::LinePlot& over_cycle, size_t index) {
+  const Joint& joint = study.mechanism.joints[index];
+  const std::vector<bool>& rotates = FreedomsOfType(joint.type).rotates;
+  const double length = CharacteristicLength(study.mechanism);
+  std::vector<Markup> figures;
+  for (size_t k = 0; k < rotates.size() && joint.type != JointType::kSpherical; ++k) {
+    const int freedom = static_cast<int>(k);
+    const FreedomRange range = FindRange(study, result, static_cast<int>(index), freedom);
+    if (range.stroke() <= kRounding * (rotates[k] ? 1 : length)) continue;
+    const bool is_axis = RunsOneWay(study, result) &&
+                         study.drives[0].joint == static_cast<int>(index) &&
+                         study.drives[0].freedom == freedom;
+    if (is_axis) continue;
+    plot::LinePlot plot = over_cycle;
+    plot.title = "Load over the joint's own coordinate";
+    plot.x = {(rotates[k] ? "angle of " : "position of ") + NameOfFreedom(joint, freedom),
+              rotates[k] ? "°" : "mm",
+              rotates[k] ? plot::ScaleType::kDegrees : plot::ScaleType::kLinear};
+    plot.stations.clear();
+    for (plot::Series& series : plot.series) {
+      series.x = CoordinateAxis(result, index, k, rotates[k]);
+      series.mark_peak = false;
+    }
+    plot.width = 492;
+    plot.height = 260;
+    figures.push_back(html::Figure(plot::Draw(plot)));
+  }
+  return figures.empty()
+             ? Markup()
+             : html::Details("Over the joint's own coordinate", html::FigureRow(figures));
 }
 
 plot::PolarPlot PolarDiagram(const LoadStudy& study, const LoadStudyResult& result,
@@ -146,7 +210,8 @@ Markup JointSection(const LoadStudy& study, const LoadStudyResult& result, const
   section +=
       html::Paragraph(fmt::format("What {} exerts on {}, in the axes of the joint's anchor on {}.",
                                   link(joint.first), link(joint.second), link(joint.first)));
-  std::vector<Markup> figures = {html::Figure(plot::Draw(ForcePlot(study, result, cycle, index)))};
+  const plot::LinePlot force = ForcePlot(study, result, cycle, index);
+  std::vector<Markup> figures = {html::Figure(plot::Draw(force))};
   if (HasPolarDiagram(joint.type)) {
     figures.push_back(html::Figure(plot::Draw(PolarDiagram(study, result, cycle, index))));
   }
@@ -157,9 +222,10 @@ Markup JointSection(const LoadStudy& study, const LoadStudyResult& result, const
     largest = std::max(largest, pose.joints[index].moment.cwiseAbs().maxCoeff());
   }
   if (largest > negligible) {
-    details += html::Figure(plot::Draw(MomentPlot(result, cycle, index)));
+    details += html::FigureRow({html::Figure(plot::Draw(MomentPlot(result, cycle, index)))});
   }
-  return section + html::Details("All six components", details);
+  section += html::Details("All six components", details);
+  return section + OwnCoordinatePlots(study, result, force, index);
 }
 
 }  // namespace

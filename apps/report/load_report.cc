@@ -11,7 +11,9 @@
 #include "vmech/apps/report/bearing_section.h"
 #include "vmech/apps/report/certainty_words.h"
 #include "vmech/apps/report/cycle.h"
+#include "vmech/apps/report/input_section.h"
 #include "vmech/apps/report/joint_section.h"
+#include "vmech/apps/report/kinematics_section.h"
 #include "vmech/dynamics/loads/load_result.h"
 #include "vmech/mechanisms/freedoms.h"
 #include "vmech/studies/read_motion.h"
@@ -40,7 +42,7 @@ struct Report {
   const StudyOutcome& outcome;
   const LoadStudy& study;
   const LoadStudyResult& result;
-  std::string_view version;
+  std::string_view version, date;
 };
 
 void CheckReport(const Report& report) {
@@ -174,10 +176,6 @@ Markup Header(const Report& report, const Cycle& cycle) {
                     Markup("Mechanism ") + html::Element("strong", report.study.mechanism.name) +
                         ". " + DescribeMotion(report.study, report.result),
                     "lead");
-  if (const std::string centres = DescribeDeadCentres(report.study, report.result);
-      !centres.empty()) {
-    header += html::Paragraph("Dead centres: " + centres + ".");
-  }
   if (!report.file.description.empty()) header += html::Paragraph(report.file.description);
   header += Headline(report, cycle);
   if (!report.result.warnings.empty()) {
@@ -301,25 +299,27 @@ Markup MethodSection(const Report& report, const Cycle& cycle) {
         fmt::format("Minimum norm weighs moments against forces by a length of {} mm.",
                     Number(result.norm_length * 1e3)));
   }
-  section += html::Figure(plot::Draw(PosePlot(result, cycle, "Error of the power balance",
-                                              {"error, relative", ""}, &PoseLoads::power_error)));
-  return section;
+  return section + html::FigureRow({html::Figure(
+                       plot::Draw(PosePlot(result, cycle, "Error of the power balance",
+                                           {"error, relative", ""}, &PoseLoads::power_error)))});
 }
 
 Markup Footer(const Report& report) {
   return html::Element(
       "footer",
-      fmt::format("vmech {}, study {}, mechanism {}. The numbers behind the plots stand in "
-                  "loads.csv, motion.csv, certainty.csv and bearings.csv beside this page.",
-                  report.version, report.file.path.filename().string(),
+      fmt::format("vmech {}{}{}, study {}, mechanism {}. The numbers behind the plots stand in "
+                  "loads.csv, motion.csv, joints.csv, certainty.csv and bearings.csv beside this "
+                  "page.",
+                  report.version, report.date.empty() ? "" : ", ", report.date,
+                  report.file.path.filename().string(),
                   report.file.mechanism_path.filename().string()));
 }
 
 }  // namespace
 
 std::string RenderLoadReport(const StudyFile& file, const StudyOutcome& outcome,
-                             std::string_view version) {
-  const Report report{file, outcome, file.study, outcome.loads, version};
+                             std::string_view version, std::string_view date) {
+  const Report report{file, outcome, file.study, outcome.loads, version, date};
   CheckReport(report);
   const Cycle cycle = CycleOf(report.study, report.result);
   Markup body = Header(report, cycle);
@@ -327,8 +327,10 @@ std::string RenderLoadReport(const StudyFile& file, const StudyOutcome& outcome,
   body += CertaintySection(report.study, report.result);
   body += BearingSections(file, outcome);
   body += JointSections(report.study, report.result, cycle);
+  body += KinematicsSection(report.study, report.result, cycle);
   body += DriveSection(report, cycle);
   body += MethodSection(report, cycle);
+  body += InputSection(file, version, date);
   body += Footer(report);
   return html::RenderPage(file.name + ": joint loads", body, plot::PlotStyleSheet());
 }

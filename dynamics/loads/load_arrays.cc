@@ -23,6 +23,7 @@ LoadArrays::LoadArrays(const Shape& shape)
   std::partial_sum(shape.freedoms.begin(), shape.freedoms.end(), first_freedom.begin() + 1);
   positions.resize(shape.poses * freedom_count());
   rates.resize(shape.poses * freedom_count());
+  accelerations.resize(shape.poses * freedom_count());
 }
 
 JointSample LoadArrays::Joint(size_t pose, size_t joint) const {
@@ -32,6 +33,7 @@ JointSample LoadArrays::Joint(size_t pose, size_t joint) const {
   for (int k = 0; k < count; ++k) {
     sample.position[k] = positions[first + static_cast<size_t>(k)];
     sample.rate[k] = rates[first + static_cast<size_t>(k)];
+    sample.acceleration[k] = accelerations[first + static_cast<size_t>(k)];
   }
   return sample;
 }

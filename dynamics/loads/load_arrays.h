@@ -30,7 +30,10 @@ struct DriveSample : MotionSample {
 /// origin, in the axes of the first anchor.
 struct JointSample : Wrenchd {
   Vector3d position = Vector3d::Zero();  ///< coordinates of its freedoms, unwrapped
+  /// Of these; of a spherical joint the angular velocity of the second anchor in the first, in axes
+  /// of the second.
   Vector3d rate = Vector3d::Zero();
+  Vector3d acceleration = Vector3d::Zero();  ///< d/dt of `rate`, from the loop equations
 };
 
 /// What the hand does to the mechanism at a pose.
@@ -100,13 +103,13 @@ struct LoadArrays {
     return {drives[at], drive_forces[at]};
   }
 
-  std::vector<int> first_freedom{0};  ///< [joints + 1] where a joint's freedoms begin
-  std::vector<double> times;          ///< [poses] [s]
-  std::vector<MotionSample> drives;   ///< [poses, drives] what is prescribed
-  Array drive_forces;                 ///< [poses, drives] [N], [N m]
-  Array wrenches;                     ///< [poses, joints, fx fy fz mx my mz], as JointSample
-  Array positions, rates;             ///< [poses, freedoms], as JointSample
-  Array powers;                       ///< [poses] of the drives and the hand [W]
+  std::vector<int> first_freedom{0};      ///< [joints + 1] where a joint's freedoms begin
+  std::vector<double> times;              ///< [poses] [s]
+  std::vector<MotionSample> drives;       ///< [poses, drives] what is prescribed
+  Array drive_forces;                     ///< [poses, drives] [N], [N m]
+  Array wrenches;                         ///< [poses, joints, fx fy fz mx my mz], as JointSample
+  Array positions, rates, accelerations;  ///< [poses, freedoms], as JointSample
+  Array powers;                           ///< [poses] of the drives and the hand [W]
   /// [poses] power in, less d/dt energy and losses, over the largest sum of the terms at any pose
   /// of the study.
   Array power_errors;

@@ -12,6 +12,7 @@
 #include "vmech/dynamics/loads/pose/idle_freedoms.h"
 #include "vmech/dynamics/loads/pose/resting_friction.h"
 #include "vmech/kinematics/inverse/inverse_kinematics.h"
+#include "vmech/kinematics/loops/cut_joint.h"
 #include "vmech/kinematics/loops/loops.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
 #include "vmech/solvers/nullspace.h"

@@ -10,6 +10,7 @@
 #include "vmech/dynamics/in_hand/passive_joints.h"
 #include "vmech/hw_interface/screen/slide_joint.h"
 #include "vmech/kinematics/loops/assembled_mechanism.h"
+#include "vmech/kinematics/loops/cut_joint.h"
 #include "vmech/kinematics/loops/loops.h"
 #include "vmech/kinematics/loops/mobility.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"

@@ -10,6 +10,7 @@
 
 #include "vmech/base/linear_algebra/linear_algebra.h"
 #include "vmech/base/screw_algebra.h"
+#include "vmech/kinematics/loops/cut_joint.h"
 #include "vmech/kinematics/loops/dimensionless_loops.h"
 #include "vmech/kinematics/loops/loops.h"
 #include "vmech/kinematics/loops/mobility.h"

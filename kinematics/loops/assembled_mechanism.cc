@@ -8,6 +8,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "vmech/kinematics/loops/cut_joint.h"
 #include "vmech/kinematics/loops/loop_walk.h"
 #include "vmech/kinematics/loops/loops.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"

@@ -1,11 +1,11 @@
 #include "vmech/kinematics/loops/loops.h"
 
 #include <cmath>
-#include <numbers>
 
 #include "vmech/base/dual.h"
 #include "vmech/base/lanes4.h"
 #include "vmech/base/screw_algebra.h"
+#include "vmech/kinematics/loops/cut_joint.h"
 
 namespace vmech {
 namespace {
@@ -36,21 +36,6 @@ Vector3<T> ForbiddenRotation(JointType type, const Matrix3<T>& R) {
   }
 }
 
-template <typename T>
-T TurnAboutZ(const Matrix3<T>& R_FM) {
-  using std::atan2;
-  return atan2(R_FM(1, 0) - R_FM(0, 1), R_FM(0, 0) + R_FM(1, 1));
-}
-
-/// The turn of a screw joint; whole turns are told by the travel.
-template <typename T>
-T ScrewTurn(const Matrix3<T>& R_FM, const T& travel, const T& pitch) {
-  using std::round;
-  constexpr double kTurn = 2 * std::numbers::pi;
-  const T angle = TurnAboutZ(R_FM);
-  return angle + kTurn * round((travel / pitch - angle) / kTurn);
-}
-
 /// Is the joint assembled more than a quarter turn from where it belongs, so that small errors mean
 /// nothing?
 template <typename T>
@@ -67,27 +52,6 @@ auto FacesBackwards(const Loop& loop, const LoopState<T>& state) {
   }
 }
 
-Vector3<Dual> RotationVector(const Matrix3<Dual>& R) {
-  const Vector3<Dual> sine =
-      0.5 * Vector3<Dual>(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));
-  const Dual cosine = 0.5 * (R.trace() - 1.0), square = sine.squaredNorm();
-  if (square.value == 0) return sine;
-  const Dual size = sqrt(square);
-  return atan2(size, cosine) / size * sine;
-}
-
-template <typename T>
-Vector3<T> RotationVector(const Matrix3<T>& R) {
-  Vector3<T> turn;
-  Vector3d lanes[kLanesOf<T>];
-  for (int lane = 0; lane < kLanesOf<T>; ++lane) {
-    const Eigen::AngleAxisd rotation(Lane(R, lane));
-    lanes[lane] = rotation.angle() * rotation.axis();
-  }
-  for (int k = 0; k < 3; ++k) turn[k] = FromLanes<T>([&](int lane) { return lanes[lane][k]; });
-  return turn;
-}
-
 template <typename T>
 ScrewT<T> ForceAlong(const Triple<T>& axis, const Triple<T>& p_WM) {
   return {axis, Cross(p_WM, axis)};
@@ -96,13 +60,6 @@ ScrewT<T> ForceAlong(const Triple<T>& axis, const Triple<T>& p_WM) {
 template <typename T>
 ScrewT<T> MomentAbout(const Triple<T>& axis) {
   return {ZeroTriple<T>(), axis};
-}
-
-/// Twist of M in F, axes of F, about the origin of M.
-template <typename T>
-Vector6<T> TwistInJoint(const LoopState<T>& s, const ScrewT<T>& V_rel) {
-  const Triple<T> linear = VelocityAt(s.F.p, V_rel);
-  return Vector6Of(ScrewT<T>{InverseRotate(s.F, linear), InverseRotate(s.F, V_rel.angular)});
 }
 
 }  // namespace
@@ -258,80 +215,6 @@ Wrenchd WrenchOfMultipliers(const Loop& loop, const LoopState<double>& state, co
   return {};
 }
 
-template <typename T>
-Vector3<T> CutJointCoordinates(const Loop& loop, const LoopState<T>& state) {
-  using std::atan2;
-  const Matrix3<T>& R = state.R_FM;
-  const Vector3<T>& p = state.p_FM;
-  const T zero(0);
-  switch (loop.type) {
-    case JointType::kRevolute:
-      return {TurnAboutZ(R), zero, zero};
-    case JointType::kPrismatic:
-      return {p.z(), zero, zero};
-    case JointType::kCylindrical:
-      return {p.z(), TurnAboutZ(R), zero};
-    case JointType::kScrew:
-      return {ScrewTurn<T>(R, p.z(), state.pitch), zero, zero};
-    case JointType::kUniversal:
-      return {atan2(R(2, 1), R(1, 1)), atan2(R(0, 2), R(0, 0)), zero};
-    case JointType::kSpherical:
-      return RotationVector(R);
-    case JointType::kPlanar:
-      return {p.x(), p.y(), TurnAboutZ(R)};
-    case JointType::kWeld:
-      break;
-  }
-  return Vector3<T>::Zero();
-}
-
-template <typename T>
-CutJointFreedoms<T> FreedomsOfCutJoint(const Loop& loop, const LoopState<T>& state) {
-  const Vector3<T> zero = Vector3<T>::Zero();
-  auto twist = [](const Vector3<T>& linear, const Vector3<T>& angular) {
-    Vector6<T> V;
-    V << linear, angular;
-    return V;
-  };
-  auto along = [&](const Vector3<T>& axis) { return twist(axis, zero); };
-  auto about = [&](const Vector3<T>& axis) { return twist(zero, axis); };
-  const Vector3<T> x = Vector3<T>::UnitX(), y = Vector3<T>::UnitY(), z = Vector3<T>::UnitZ();
-  switch (loop.type) {
-    case JointType::kRevolute:
-      return {1, {about(z)}};
-    case JointType::kPrismatic:
-      return {1, {along(z)}};
-    case JointType::kCylindrical:
-      return {2, {along(z), about(z)}};
-    case JointType::kScrew:
-      return {1, {twist(state.pitch * z, z)}};
-    case JointType::kUniversal:
-      return {2, {about(x), about(state.R_FM.col(1))}};
-    case JointType::kSpherical:
-      return {3, {about(state.R_FM.col(0)), about(state.R_FM.col(1)), about(state.R_FM.col(2))}};
-    case JointType::kPlanar:
-      return {3, {along(x), along(y), about(z)}};
-    case JointType::kWeld:
-      break;
-  }
-  return {};
-}
-
-template <typename T>
-Vector3<T> CutJointRates(const KinematicTree& tree, const TreeWorkspace<T>& ws, int loop_index) {
-  const Loop& loop = tree.loops[loop_index];
-  const LoopState<T>& s = ws.loops[loop_index];
-  const JointPlacement& place = tree.placements[loop.joint];
-  const Vector6<T> V_FM =
-      TwistInJoint<T>(s, ws.at(place.second_node).V - ws.at(place.first_node).V);
-  const CutJointFreedoms<T> freedoms = FreedomsOfCutJoint(loop, s);
-  Vector3<T> rates = Vector3<T>::Zero();
-  for (int i = 0; i < freedoms.count; ++i) {
-    rates[i] = freedoms.twist_F[i].dot(V_FM) / freedoms.twist_F[i].squaredNorm();
-  }
-  return rates;
-}
-
 MatrixXd DenseLoopJacobian(const KinematicTree& tree, const TreeWorkspace<double>& ws) {
   MatrixXd C = MatrixXd::Zero(tree.rows, tree.nv);
   for (size_t l = 0; l < tree.loops.size(); ++l) {
@@ -389,9 +272,6 @@ T LargestLoopError(const KinematicTree& tree, const TreeWorkspace<T>& ws) {
   template void LoopBias<T>(const KinematicTree&, const TreeWorkspace<T>&, int, double, T*);    \
   template void LoopAccelerationBias<T>(const KinematicTree&, TreeWorkspace<T>*);               \
   template ScrewT<T> LoopWrench<T>(const Loop&, const LoopState<T>&, const T*);                 \
-  template Vector3<T> CutJointCoordinates<T>(const Loop&, const LoopState<T>&);                 \
-  template CutJointFreedoms<T> FreedomsOfCutJoint<T>(const Loop&, const LoopState<T>&);         \
-  template Vector3<T> CutJointRates<T>(const KinematicTree&, const TreeWorkspace<T>&, int);     \
   template T LargestLoopError<T>(const KinematicTree&, const TreeWorkspace<T>&);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)

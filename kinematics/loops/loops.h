@@ -63,25 +63,6 @@ Wrenchd WrenchOfMultipliers(const Loop& loop, const LoopState<double>& state, co
 template <typename T>
 ScrewT<T> LoopWrench(const Loop& loop, const LoopState<T>& state, const T* mu);
 
-/// Coordinates of a cut joint that has turned and shifted freely, from the poses of its anchors
-/// [FreedomsOf(type)]; for a spherical joint the rotation vector. Angles within +-pi.
-template <typename T>
-Vector3<T> CutJointCoordinates(const Loop& loop, const LoopState<T>& state);
-
-/// Unit twists [v; w] of M in F of the freedoms of a cut joint, axes of F.
-template <typename T>
-struct CutJointFreedoms {
-  int count = 0;
-  Vector6<T> twist_F[3];
-};
-template <typename T>
-CutJointFreedoms<T> FreedomsOfCutJoint(const Loop& loop, const LoopState<T>& state);
-
-/// Rates of the coordinates of a cut joint [FreedomsOf(type)]; for a spherical joint the angular
-/// velocity of M in F, axes of M. Needs V and LoopErrors.
-template <typename T>
-Vector3<T> CutJointRates(const KinematicTree& tree, const TreeWorkspace<T>& ws, int loop);
-
 /// Is equation `row` of a loop one of lengths (in metres)?
 inline bool IsLengthRow(JointType type, int row);
 

@@ -116,6 +116,15 @@ class Document {
   /// @throws FileErrors with everything reported so far, in the order of the lines; or returns.
   void ThrowErrors();
 
+  /// A file that the document names, with a digest of the bytes that were read.
+  struct NamedFile {
+    std::filesystem::path path;
+    std::string digest;
+  };
+  /// Those who read such a file say so.
+  void NoteNamedFile(NamedFile file) { named_files_.push_back(std::move(file)); }
+  const std::vector<NamedFile>& named_files() const { return named_files_; }
+
  private:
   friend class Node;
   void CheckDuplicateKeys();
@@ -123,6 +132,7 @@ class Document {
   std::string name_, text_;
   std::vector<DocumentItem> items_;
   std::vector<FileError> errors_;
+  std::vector<NamedFile> named_files_;
 };
 
 }  // namespace vmech

@@ -1,9 +1,11 @@
 """command_test.py VMECH EXAMPLES: the vmech command as its users meet it."""
 
 import csv
+import hashlib
 import html.parser
 import json
 import math
+import os
 import pathlib
 import shutil
 import subprocess
@@ -25,8 +27,8 @@ MOBILITY = {
     "square-four-bar": 1, "stewart-gough": 6, "stewart-gough-sps": 12,
     "sundials-slider-crank": 1, "two-link-arm": 2,
 }
-OUTPUTS = {"loads.csv", "motion.csv", "certainty.csv", "bearings.csv", "summary.json",
-           "report.html"}
+OUTPUTS = {"loads.csv", "motion.csv", "joints.csv", "certainty.csv", "bearings.csv",
+           "summary.json", "report.html"}
 WRENCH = ("fx", "fy", "fz", "mx", "my", "mz")
 MOTION = ("x", "y", "z", "qw", "qx", "qy", "qz", "vx", "vy", "vz", "wx", "wy", "wz", "ax", "ay",
           "az", "alphax", "alphay", "alphaz")
@@ -34,10 +36,11 @@ POWER_TOLERANCE = 1e-9  # of the largest term of the balance
 UNIT_TOLERANCE = 1e-12  # of a unit quaternion: rounding of a rotation matrix
 
 
-def vmech(*arguments, folder=None):
-    """Runs the command as a shell would, without a terminal."""
+def vmech(*arguments, folder=None, epoch="1700000000"):
+    """Runs the command as a shell would, without a terminal, on a day of its own."""
     return subprocess.run([VMECH, *map(str, arguments)], cwd=folder, capture_output=True,
-                          text=True, stdin=subprocess.DEVNULL, timeout=120)
+                          text=True, stdin=subprocess.DEVNULL, timeout=120,
+                          env={**os.environ, "SOURCE_DATE_EPOCH": epoch})
 
 
 def skew_rocker(angle):
@@ -377,6 +380,38 @@ class Loads(InFolder):
                 self.expect_motion(out, mechanism)
                 self.expect_certainty(out, summary)
                 self.assertLess(summary["max_power_error"], POWER_TOLERANCE)
+
+    def test_joints_table_is_the_slider_crank_of_the_textbook(self):
+        self.run_vmech("loads", "slider-crank-study.yaml", "--out", "out")
+        header, *rows = read_csv(self.folder / "out" / "joints.csv")
+        self.assertEqual(header, ["t"] + [f"{joint}.{what}"
+                                          for joint in ("main", "pin", "wrist", "guide")
+                                          for what in ("position", "rate", "acceleration")])
+        r, rod, w = 0.05, 0.15, 50 * math.pi
+        for row in rows:
+            angle, rate, acceleration, *others = map(float, row[1:])
+            x, dx, ddx = others[-3:]
+            s, c = math.sin(angle), math.cos(angle)
+            along = math.sqrt(rod ** 2 - (r * s) ** 2)  # of the rod on the slide
+            slope = -r * r * s * c / along
+            self.assertAlmostEqual(rate, w, delta=1e-9 * w)
+            self.assertEqual(acceleration, 0)
+            self.assertAlmostEqual(x, r * c + along, delta=1e-12)
+            self.assertAlmostEqual(dx, w * (slope - r * s), delta=1e-10)
+            second = -(r * r * math.cos(2 * angle) + slope ** 2) / along
+            self.assertAlmostEqual(ddx, w * w * (second - r * c), delta=1e-7)
+
+    def test_report_names_what_it_was_computed_from(self):
+        out = self.folder / "out"
+        self.run_vmech("loads", "slider-crank-study.yaml", "--out", "out")
+        page = (out / "report.html").read_text(encoding="utf-8")
+        for name in ("slider-crank-study.yaml", "slider-crank.yaml", "slider-crank-gas.csv"):
+            digest = hashlib.sha256((self.folder / name).read_bytes()).hexdigest()
+            self.assertIn(f"<td>{name}</td><td><code>{digest}</code></td>", page)
+        self.assertIn("on 2023-11-14 (UTC)", page)
+        result = vmech("loads", "slider-crank-study.yaml", folder=self.folder, epoch="yesterday")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("SOURCE_DATE_EPOCH is 'yesterday'", result.stderr)
 
     def test_bearing_table_has_a_row_for_every_position(self):
         self.run_vmech("loads", "slider-crank-study.yaml", "--out", "out")

@@ -62,7 +62,7 @@ class HostileText(unittest.TestCase):
         self.assertEqual(code, 0, err)
         self.assertIn("=1+1", out)
         disarmed = 0
-        for name in ("loads.csv", "motion.csv", "certainty.csv", "bearings.csv"):
+        for name in ("loads.csv", "motion.csv", "joints.csv", "certainty.csv", "bearings.csv"):
             with open(self.folder / "out" / name, newline="", encoding="utf-8") as file:
                 for row in csv.reader(file):
                     for cell in row:

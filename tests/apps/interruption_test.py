@@ -20,7 +20,8 @@ VMECH = ""
 EXAMPLES = pathlib.Path()
 INTERRUPT_CALLS = pathlib.Path()
 
-LOADS = ("loads.csv", "motion.csv", "certainty.csv", "bearings.csv", "summary.json", "report.html")
+LOADS = ("loads.csv", "motion.csv", "joints.csv", "certainty.csv", "bearings.csv", "summary.json",
+         "report.html")
 COMPARISON = ("results.csv", "summary.json", "report.html")
 MOST_CALLS = 200
 

@@ -8,6 +8,7 @@
 #include <ostream>
 
 #include "support/temp_folder.h"
+#include "vmech/studies/sha256.h"
 
 namespace vmech {
 namespace {
@@ -71,6 +72,26 @@ class StudyReader : public testing::Test {
 
   TempFolder folder_;
 };
+
+TEST(Sha256, OfTheExamplesOfTheStandard) {
+  // FIPS 180-4, and the lengths around the end of a block
+  EXPECT_EQ(Sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(Sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(Sha256("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"),
+            "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  EXPECT_EQ(Sha256(std::string(1000000, 'a')),
+            "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+}
+
+TEST_F(StudyReader, RemembersTheFilesThatWereReadEachOnce) {
+  const StudyFile study =
+      Parse(Replaced(kStudy, "rule:", "  - {link: slider, table: gas.csv}\nrule:"));
+  ASSERT_EQ(study.inputs.size(), 3u);
+  EXPECT_EQ(study.inputs[0].path.filename(), "study.yaml");
+  EXPECT_EQ(study.inputs[1].path.filename(), "slider-crank.yaml");
+  EXPECT_EQ(study.inputs[2].path.filename(), "gas.csv");
+  EXPECT_EQ(study.inputs[2].sha256, Sha256("main,fx\n0,-100\n180,-50\n360,-100\n"));
+}
 
 TEST_F(StudyReader, ReadsTheMotionOfAMotor) {
   const LoadStudy loads = Parse(kStudy).study;

@@ -41,6 +41,8 @@ LoadStudyResult TurningResult() {
     const double wrench[] = {1.0 / 3, -0.0, 1e-300, 1e22, -2.5e-7, angle};
     std::copy_n(wrench, 6, &loads->wrenches[6 * i]);
     loads->power_errors[i] = 0;
+    loads->positions[i] = angle;
+    loads->rates[i] = loads->accelerations[i] = 0;
     loads->links[2 * i + 1].X_WL.R = Eigen::AngleAxisd(angle, Vector3d::UnitZ()).toRotationMatrix();
   }
   result.poses = PoseSeries(loads);
@@ -91,6 +93,7 @@ TEST(Tables, DoNotDependOnTheNumberOfThreads) {
   const LoadStudyResult result = TurningResult();
   EXPECT_EQ(LoadsTable(file, result, 1), LoadsTable(file, result, 5));
   EXPECT_EQ(MotionTable(file, result, 1), MotionTable(file, result, 5));
+  EXPECT_EQ(JointsTable(file, result, 1), JointsTable(file, result, 5));
 }
 
 TEST(MotionTable, QuaternionRunsOnWithoutJumpsThroughWholeTurns) {

@@ -159,6 +159,24 @@ TEST_P(EveryDrivenExample, AccelerationsAreTheSlopesOfVelocities) {
   }
 }
 
+TEST_P(EveryDrivenExample, JointAccelerationsAreTheSlopesOfRatesWhereverLoopsAreCut) {
+  constexpr double kStep = 1e-5;
+  constexpr double kDifference = 1e-6;  // step^2 times third derivatives of the rates
+  const double middle = study_.times[12];
+  study_.times = {middle - kStep, middle, middle + kStep};
+  for (size_t cut = 0; cut < mechanism_.joints.size(); ++cut) {
+    study_.mechanism.preferred_cuts = {static_cast<int>(cut)};
+    const LoadStudyResult result = RunLoadStudy(study_);
+    const PoseLoads behind = result.poses[0], here = result.poses[1], ahead = result.poses[2];
+    for (size_t j = 0; j < mechanism_.joints.size(); ++j) {
+      const Vector3d slope = (ahead.joints[j].rate - behind.joints[j].rate) / (2 * kStep);
+      const Vector3d& acceleration = here.joints[j].acceleration;
+      EXPECT_LE((slope - acceleration).norm(), kDifference * (1 + acceleration.norm()))
+          << mechanism_.joints[j].name << ", cut at " << mechanism_.joints[cut].name;
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Examples, EveryDrivenExample, testing::ValuesIn(DrivenExamples()),
                          [](const auto& info) { return TestName(info.param.name); });
 

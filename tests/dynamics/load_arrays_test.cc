@@ -27,7 +27,8 @@ TEST(LoadArrays, HaveARowForEachPose) {
 
 TEST(LoadArrays, AJointIsItsPartOfEveryArray) {
   LoadArrays loads(SmallShape());
-  for (LoadArrays::Array* array : {&loads.wrenches, &loads.positions, &loads.rates}) {
+  for (LoadArrays::Array* array :
+       {&loads.wrenches, &loads.positions, &loads.rates, &loads.accelerations}) {
     std::iota(array->begin(), array->end(), 100.0 * array->size());
   }
   const JointSample last = loads.Joint(1, 2);
@@ -35,6 +36,7 @@ TEST(LoadArrays, AJointIsItsPartOfEveryArray) {
   EXPECT_EQ(last.moment, Vector3d(3633, 3634, 3635));
   EXPECT_EQ(last.position, Vector3d(805, 806, 807));
   EXPECT_EQ(last.rate, Vector3d(805, 806, 807));
+  EXPECT_EQ(last.acceleration, Vector3d(805, 806, 807));
   EXPECT_EQ(loads.Joint(1, 0).position, Vector3d(804, 0, 0));
   EXPECT_EQ(loads.Joint(1, 1).rate, Vector3d(0, 0, 0));
 }

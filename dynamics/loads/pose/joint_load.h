@@ -10,6 +10,7 @@ struct JointLoad {
   Wrench<T> W_F;        ///< what the first link exerts on the second, about the second anchor
   Vector3<T> position;  ///< coordinates of its freedoms
   Vector3<T> rate;
+  Vector3<T> acceleration;  ///< of the coordinates, the slopes of `rate`
 };
 
 }  // namespace vmech

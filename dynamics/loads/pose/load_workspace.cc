@@ -28,7 +28,7 @@ LoadWorkspace<T>::LoadWorkspace(const LoadModel& model, const TreeDesign<T>& des
       passive(VectorX::Zero(model.tree.nv)),
       open(VectorX::Zero(model.tree.nv)),
       mu(VectorX::Zero(model.tree.rows)),
-      loads(joints.size(), {{}, Vector3<T>::Zero(), Vector3<T>::Zero()}),
+      loads(joints.size(), {{}, Vector3<T>::Zero(), Vector3<T>::Zero(), Vector3<T>::Zero()}),
       drive_forces(model.drives.size(), T(0)) {
   SetGravity(model.tree.mechanism.gravity_W, &tree);
   const CoordinatePartition& p = model.partition;

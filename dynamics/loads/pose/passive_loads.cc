@@ -4,6 +4,7 @@
 #include "vmech/base/lanes4.h"
 #include "vmech/dynamics/loads/pose/contact_friction.h"
 #include "vmech/dynamics/rigid_body/passive.h"
+#include "vmech/kinematics/loops/cut_joint.h"
 #include "vmech/kinematics/loops/loops.h"
 
 namespace vmech {

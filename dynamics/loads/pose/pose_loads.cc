@@ -14,6 +14,7 @@
 #include "vmech/dynamics/loads/pose/power.h"
 #include "vmech/dynamics/loads/pose/resting_friction.h"
 #include "vmech/dynamics/rigid_body/newton_euler.h"
+#include "vmech/kinematics/loops/cut_joint.h"
 #include "vmech/kinematics/loops/loops.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
 
@@ -125,6 +126,20 @@ void JointRates(const LoadModel& model, LoadWorkspace<T>* ws) {
   for (size_t l = 0; l < model.tree.loops.size(); ++l) {
     ws->loads[model.tree.loops[l].joint].rate =
         CutJointRates(model.tree, ws->tree, static_cast<int>(l));
+  }
+}
+
+/// The slopes of JointRates.
+template <typename T>
+void JointAccelerations(const LoadModel& model, LoadWorkspace<T>* ws) {
+  for (const TreeNode& node : model.tree.nodes) {
+    for (int k = 0; k < VelocitiesOf(node.motion); ++k) {
+      ws->loads[node.joint].acceleration[node.freedom + k] = ws->vdot[node.v + k];
+    }
+  }
+  for (size_t l = 0; l < model.tree.loops.size(); ++l) {
+    ws->loads[model.tree.loops[l].joint].acceleration =
+        CutJointAccelerations(model.tree, ws->tree, static_cast<int>(l));
   }
 }
 
@@ -293,6 +308,7 @@ bool EvaluatePoseLoads(const LoadModel& model, const Motion& motion, size_t pose
   JointFrames(model.tree, ws->tree, &ws->joints);
   ws->reactions.Factor(ws->tree, ws->joints);
   FindEquilibrium(model, ws);
+  JointAccelerations(model, ws);
   DriveForces(model, ws);
   EvaluatePower(model, ws);
   return true;

@@ -13,12 +13,14 @@ void StoreJoints(size_t pose, const LoadWorkspace<T>& ws, LoadArrays* arrays) {
   double* wrench = arrays->wrenches.data() + 6 * joints * pose;
   double* position = arrays->positions.data() + freedoms * pose;
   double* rate = arrays->rates.data() + freedoms * pose;
+  double* acceleration = arrays->accelerations.data() + freedoms * pose;
   for (size_t j = 0; j < joints; ++j) {
     const JointLoad<T>& load = ws.loads[j];
     const int first = arrays->first_freedom[j], count = arrays->first_freedom[j + 1] - first;
     StoreLanes(load.W_F.Stacked().data(), 6, wrench + 6 * j, 6 * joints);
     StoreLanes(load.position.data(), count, position + first, freedoms);
     StoreLanes(load.rate.data(), count, rate + first, freedoms);
+    StoreLanes(load.acceleration.data(), count, acceleration + first, freedoms);
   }
 }
 

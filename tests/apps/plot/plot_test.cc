@@ -108,9 +108,52 @@ TEST(Decimate, KeepsEveryPeak) {
   }
 }
 
-TEST(Decimate, LeavesACurveThatTurnsBackAsItIs) {
+TEST(Decimate, OfACurveThatTurnsBackKeepsWhatCanBeSeen) {
   const std::vector<Point> loop = {{0, 0}, {0.1, 1}, {0.2, 0}, {0.15, -1}, {0.12, 0}};
   EXPECT_EQ(Decimate(loop).size(), loop.size());
+  std::vector<Point> circle;
+  for (int i = 0; i <= 5000; ++i) {
+    circle.push_back({50 * std::cos(i * 2e-3), 50 * std::sin(i * 2e-3)});
+  }
+  const std::vector<Point> kept = Decimate(circle);
+  EXPECT_LT(kept.size(), 1100u);  // ten radians of 50 units, a point every half
+  for (std::size_t i = 1; i < kept.size(); ++i) {
+    EXPECT_LT(std::hypot(kept[i].x - kept[i - 1].x, kept[i].y - kept[i - 1].y), 0.61);
+  }
+  EXPECT_EQ(kept.back().x, circle.back().x);
+}
+
+/// Numbers of a path's `d`, as points from moves and lines that go on from each other.
+std::vector<Point> PointsOf(const std::string& svg) {
+  const std::string path = svg.substr(svg.find(" d=\"") + 4);
+  const std::regex step(R"([Ml](-?[\d.]+) ?(-?[\d.]+))");
+  std::vector<Point> points;
+  Point at;
+  for (std::sregex_iterator it(path.begin(), path.end(), step), end; it != end; ++it) {
+    at = {at.x + std::stod((*it)[1]), at.y + std::stod((*it)[2])};
+    points.push_back(at);
+  }
+  return points;
+}
+
+TEST(LinePlot, EqualScalesDrawACircleRound) {
+  LinePlot plot;
+  plot.equal_scales = true;
+  Series circle;
+  for (int i = 0; i <= 360; ++i) {
+    circle.x.push_back(1000 + 3 * std::cos(i * std::numbers::pi / 180));
+    circle.y.push_back(-20 + 3 * std::sin(i * std::numbers::pi / 180));
+  }
+  plot.series = {circle};
+  const std::vector<Point> points = PointsOf(Draw(plot).html());
+  ASSERT_GT(points.size(), 100u);
+  Point least = points[0], greatest = least;
+  for (const Point& p : points) {
+    least = {std::min(least.x, p.x), std::min(least.y, p.y)};
+    greatest = {std::max(greatest.x, p.x), std::max(greatest.y, p.y)};
+  }
+  EXPECT_NEAR(greatest.x - least.x, greatest.y - least.y, 0.1);
+  EXPECT_GT(greatest.y - least.y, 150);
 }
 
 TEST(SvgWriter, CoordinatesAddUpWithoutDrift) {

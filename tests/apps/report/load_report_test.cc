@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
+#include <string>
 
 #include "vmech/apps/report/certainty_words.h"
 #include "vmech/apps/report/cycle.h"
@@ -53,6 +55,7 @@ struct Example {
     std::copy_n(wrench, 6, &loads->wrenches[6 * i]);
     loads->positions[i] = angle;
     loads->rates[i] = kSpeed;
+    loads->accelerations[i] = 0;
     loads->powers[i] = loads->drive_forces[i] * kSpeed;
     loads->power_errors[i] = 1e-14;
     study.times.push_back(loads->times[i]);
@@ -127,6 +130,72 @@ TEST(LoadReport, EveryJointHasItsPlots) {
   const std::string page = Example().Render();
   for (const char* text : {"Load over the cycle", "Polar load diagram", "Drive torque",
                            "Error of the power balance", "angle of main [°]"}) {
+    EXPECT_TRUE(Contains(page, text)) << text;
+  }
+}
+
+/// The cosine of the crank's angle, 0.1 m to both sides.
+Example WithSlide() {
+  Example example;
+  example.study.mechanism.joints.push_back(
+      MakeJoint("slide", JointType::kPrismatic, {0, 0}, {1, 0}));
+  example.result.certainty.resize(2);
+  example.study.cycle = 2 * std::numbers::pi / kSpeed;
+  const auto both = std::make_shared<LoadArrays>(
+      LoadArrays::Shape{.poses = kPoses, .drives = 1, .freedoms = {1, 1}});
+  for (int i = 0; i < kPoses; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kPoses;
+    both->times[i] = angle / kSpeed;
+    both->drives[i] = {angle, kSpeed, 0};
+    both->drive_forces[i] = both->powers[i] = both->power_errors[i] = 0;
+    std::fill_n(&both->wrenches[12 * i], 12, 1.0);
+    const double figures[][2] = {{angle, 0.1 * std::cos(angle)},
+                                 {kSpeed, -0.1 * kSpeed * std::sin(angle)},
+                                 {0, -0.1 * kSpeed * kSpeed * std::cos(angle)}};
+    std::copy_n(figures[0], 2, &both->positions[2 * i]);
+    std::copy_n(figures[1], 2, &both->rates[2 * i]);
+    std::copy_n(figures[2], 2, &both->accelerations[2 * i]);
+  }
+  example.result.poses = PoseSeries(both);
+  return example;
+}
+
+TEST(LoadReport, SaysHowFarAndHowFastJointsMove) {
+  const std::string page = WithSlide().Render();
+  ExpectWellFormed(page);
+  EXPECT_TRUE(Contains(page,
+                       "<td>slide</td><td class=\"number\">−100.0 mm</td>"
+                       "<td class=\"number\">180.0°</td><td class=\"number\">100.0 mm</td>"
+                       "<td class=\"number\">0.0°</td><td class=\"number\">200.0 mm</td>"));
+  EXPECT_TRUE(Contains(page, "Dead centres: slide turns back at 0° and 180°."));
+  EXPECT_TRUE(Contains(page, "Time ratio of slide: 1.000."));
+  EXPECT_TRUE(Contains(page, "without plots: main."));
+  for (const char* plot :
+       {">Coordinate<", ">Rate<", ">Acceleration<", ">Load over the joint&#39;s own coordinate<"}) {
+    EXPECT_TRUE(Contains(page, plot)) << plot;
+  }
+}
+
+TEST(LoadReport, ShowsEveryInput) {
+  Example example;
+  example.study.mechanism.gravity_W = {0, 0, -9.81};
+  example.study.mechanism.links[1].mass_properties = {
+      1.25, {0.01, 0.02, 0.03}, Vector3d(1e-6, 2e-6, 3e-6).asDiagonal()};
+  example.study.mechanism.joints[0].passive[0].viscous = 0.125;
+  ExternalLoad load;
+  load.link = 1;
+  load.p_L = {0.5, 0, 0};
+  load.at = {0};
+  load.wrenches = {{{-300, 0, 0}, {0, 0, 4}}};
+  example.study.external = {load};
+  example.file.inputs = {{"somewhere/test.yaml", "0123abcd"}};
+  const std::string page =
+      RenderLoadReport(example.WithBearings().file, example.outcome, "1.2.3", "2026-01-31");
+  ExpectWellFormed(page);
+  for (const char* text :
+       {"vmech 1.2.3 on 2026-01-31 (UTC)", "Gravity 0, 0, −9.81 m/s²", "<code>0123abcd</code>",
+        ">1.25<", ">10, 20, 30<", ">1, 2, 3<", "viscous 0.125 N m s/rad", ">500, 0, 0<",
+        "fx −300 N, mz 4 N m", ">−15, 15<"}) {
     EXPECT_TRUE(Contains(page, text)) << text;
   }
 }
@@ -286,6 +355,7 @@ TEST(Cycle, MarksTheDeadCentresOfWhatStandsOnTheGround) {
     for (int j = 0; j < 2; ++j) {
       std::copy_n(&example.loads->wrenches[6 * i], 6, &both->wrenches[6 * (2 * i + j)]);
     }
+    std::fill_n(&both->accelerations[2 * i], 2, 0.0);
     both->rates[2 * i] = kSpeed;
     both->rates[2 * i + 1] = kSpeed * std::sin(both->drives[i].position - 0.3);
   }
