@@ -14,6 +14,8 @@
 #include "vmech/apps/report/input_section.h"
 #include "vmech/apps/report/joint_section.h"
 #include "vmech/apps/report/kinematics_section.h"
+#include "vmech/apps/report/motion_scene.h"
+#include "vmech/apps/view/view_page.h"
 #include "vmech/dynamics/loads/load_result.h"
 #include "vmech/mechanisms/freedoms.h"
 #include "vmech/studies/read_motion.h"
@@ -323,6 +325,7 @@ std::string RenderLoadReport(const StudyFile& file, const StudyOutcome& outcome,
   CheckReport(report);
   const Cycle cycle = CycleOf(report.study, report.result);
   Markup body = Header(report, cycle);
+  body += html::Heading(2, "The mechanism in motion") + ViewPlace();
   body += JointOverview(report.study, report.result, cycle);
   body += CertaintySection(report.study, report.result);
   body += BearingSections(file, outcome);
@@ -332,6 +335,7 @@ std::string RenderLoadReport(const StudyFile& file, const StudyOutcome& outcome,
   body += MethodSection(report, cycle);
   body += InputSection(file, version, date);
   body += Footer(report);
+  body += ViewScripts(MotionScene(file, outcome.loads, version));
   return html::RenderPage(file.name + ": joint loads", body, plot::PlotStyleSheet());
 }
 

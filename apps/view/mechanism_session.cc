@@ -185,7 +185,8 @@ std::string MechanismSession::Do(const Json& request) {
   const auto act = acts.find(what);
   if (act == acts.end()) throw std::invalid_argument("'" + what + "' is nothing that can be done");
   act->second();
-  if (request.contains("sent") && request["sent"].is_number()) echo_ = request["sent"].get<double>();
+  if (request.contains("sent") && request["sent"].is_number())
+    echo_ = request["sent"].get<double>();
   return "";
 }
 

@@ -49,9 +49,12 @@ std::string ViewPage(const std::string& title, const std::string& scene_json) {
   return page;
 }
 
-html::Markup ViewSection(const std::string& scene_json) {
-  return html::Markup::Raw(StyleElement() + "<div class=\"vmech-view\" id=\"vmech-view\"></div>\n" +
-                           SceneElement(scene_json) +
+html::Markup ViewPlace() {
+  return html::Markup::Raw(StyleElement() + "<div class=\"vmech-view\" id=\"vmech-view\"></div>\n");
+}
+
+html::Markup ViewScripts(const std::string& scene_json) {
+  return html::Markup::Raw(SceneElement(scene_json) +
                            ScriptElement(Between(vmech_three, vmech_three_end)) +
                            ScriptElement(Between(vmech_page_script, vmech_page_script_end)));
 }
