@@ -35,6 +35,7 @@ function exposed(view) {
     gltf: () => Promise.resolve(new GltfWriter(view).write()),
     picture: () => view.exports.picture().toDataURL("image/png"),
     renderer: stage.rendererName,
+    get shownAt() { return stage.shownAt; },
     triangles: view.nodes.triangles,
     scriptTimes: stage.scriptTimes,
     latencies: view.session ? view.session.latencies : [],

@@ -124,6 +124,7 @@ class Stage {
     const after = this.after;
     this.after = [];
     for (const work of after) work();
+    this.shownAt = this.shownAt || performance.now();  // ms from the beginning of the page
     if (this.scriptTimes.length === kKeptTimes) this.scriptTimes.shift();
     this.scriptTimes.push(performance.now() - begin);
     if (this.before.size) this.ask();

@@ -84,7 +84,7 @@ class View {
 
   fit() {
     const covered = Math.min(0.3, kToolsHeight / this.stage.canvas.clientHeight);
-    this.stage.eye.fit(this.swept, 0.05 * this.shapes.sizes.length, covered);
+    this.stage.eye.fit(this.swept, 0.1 * this.shapes.sizes.length, covered);
     this.looked();
   }
 
