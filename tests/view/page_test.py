@@ -7,7 +7,7 @@ import sys
 import time
 import unittest
 
-from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.actions.action_builder import ActionBuilder
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import WebDriverWait
@@ -20,7 +20,7 @@ from page_parts import page_html
 CLOSED_FORM = 1e-6  # m, of the coupler's point; single precision of the poses leaves 3e-8
 PIXEL = 2.5         # pixels between where the mouse is and where the point is drawn
 OPEN = 2.0          # s for 100,000 triangles
-FRAME = 4.0         # ms of script, the median while a platform of 21 joints plays
+FRAME = 4.0         # ms of script a frame, the mean while a platform of 21 joints plays
 
 
 class PageTest(unittest.TestCase):
@@ -47,6 +47,18 @@ class PageTest(unittest.TestCase):
     def wait(self, script, *arguments, seconds=10):
         return WebDriverWait(BROWSER, seconds, 0.05).until(
             lambda browser: browser.execute_script(script, *arguments))
+
+    def mouse(self, *steps):
+        """Steps of the mouse: a point of the window to go to, "down" or "up"."""
+        actions = ActionBuilder(BROWSER, duration=40)
+        for step in steps:
+            if step == "down":
+                actions.pointer_action.pointer_down()
+            elif step == "up":
+                actions.pointer_action.pointer_up()
+            else:
+                actions.pointer_action.move_to_location(round(step[0]), round(step[1]))
+        actions.perform()
 
     def item(self, text):
         """The button of the tree with a name."""
@@ -142,25 +154,38 @@ class Motion(PageTest):
     def test_a_click_on_a_joint_shows_its_plots_and_one_in_a_plot_moves_the_mechanism(self):
         bar = scenes.FourBar()
         self.open(bar.scene())
-        x, y = self.do("return vmechView.screenOf([arguments[0], 0, 0.01])", bar.ground)
-        ActionChains(BROWSER).move_by_offset(round(x), round(y)).click().perform()
-        ActionChains(BROWSER).move_by_offset(-round(x), -round(y)).perform()
+        self.mouse(self.do("return vmechView.screenOf([arguments[0], 0, 0.002])", bar.ground),
+                   "down", "up")
         self.assertEqual(self.do("return vmechView.picked()"), {"kind": "joint", "index": 3})
         titles = [t.text for t in BROWSER.find_elements(By.CSS_SELECTOR, ".vv-title")]
         self.assertEqual(titles[0], "D [deg]")
         self.assertTrue(any(title.endswith("[N]") for title in titles))
         chart = BROWSER.find_element(By.CSS_SELECTOR, ".vv-chart")
-        ActionChains(BROWSER).move_to_element(chart).click().perform()
-        # The middle of the canvas is not that of its axes.
-        share = (chart.size["width"] / 2 - 50) / (chart.size["width"] - 58)
-        self.assertAlmostEqual(self.do("return vmechView.poseIndex()"), share * 719, delta=2)
+        box = self.do("return arguments[0].getBoundingClientRect().toJSON()", chart)
+        middle = box["left"] + 50 + 0.5 * (box["width"] - 58)  # of the axes within the canvas
+        self.mouse((middle, box["top"] + 60), "down", "up")
+        self.assertAlmostEqual(self.do("return vmechView.poseIndex()"), 719 / 2, delta=3)
 
     def test_a_platform_of_21_joints_is_cheap_to_play(self):
         self.open(scenes.hexapod(legs=7))
         self.do("vmechView.pick('joint', 1); vmechView.play()")
-        self.wait("return vmechView.scriptTimes.length > 25", seconds=20)
-        times = sorted(self.do("vmechView.pause(); return vmechView.scriptTimes.slice(5)"))
-        self.assertLess(times[len(times) // 2], FRAME)
+        self.wait("return vmechView.scriptTimes.length > 3", seconds=20)
+        BROWSER.execute_cdp_cmd("Profiler.enable", {})
+        frames = self.do("return vmechView.drawn()")
+        BROWSER.execute_cdp_cmd("Profiler.start", {})
+        time.sleep(2)
+        profile = BROWSER.execute_cdp_cmd("Profiler.stop", {})["profile"]
+        frames = self.do("vmechView.pause(); return vmechView.drawn()") - frames
+        self.assertGreater(frames, 5)
+        self.assertLess(script_time(profile) / frames, FRAME)
+
+
+def script_time(profile):
+    """Milliseconds in functions; waiting for the picture, which software draws here, is none."""
+    names = {node["id"]: node["callFrame"]["functionName"] for node in profile["nodes"]}
+    waits = ("(program)", "(idle)", "(root)")
+    return sum(delta for sample, delta in zip(profile["samples"], profile["timeDeltas"])
+               if names[sample] not in waits) / 1000
 
 
 class Names(PageTest):
@@ -226,16 +251,14 @@ class LiveSession(PageTest):
         self.serve()
         x, y = self.tip()
         goal = self.do("return vmechView.screenOf([0, arguments[0], 0])", 0.6 * self.bar.crank)
-        mouse = ActionChains(BROWSER, duration=60)
-        mouse.move_by_offset(x, y).click_and_hold().move_by_offset(1, -2)
-        mouse.move_by_offset(round(goal[0]) - x - 1, round(goal[1]) - y + 2).perform()
+        self.mouse((x, y), "down", (x + 1, y - 2), goal)
         self.wait("return vmechView.latencies.length > 2")
         self.wait("return vmechView.now().coordinates[0] > 1.4")
         self.assertEqual(self.server.done("grab")[0]["link"], 1)
         last = self.server.done("drag")[-1]["to"]
         self.assertLess(math.dist(self.do("return vmechView.screenOf(arguments[0])", last), goal), PIXEL)
         self.assertEqual(BROWSER.find_element(By.CSS_SELECTOR, ".vv-force").text, "5.000 N")
-        ActionChains(BROWSER).release().perform()
+        self.mouse("up")
         self.wait("return !document.querySelector('.vv-canvas').classList.contains('vv-holding')")
         time.sleep(0.2)
         self.assertEqual(self.server.done("release"), [{"do": "release", "keep": False}])
@@ -243,11 +266,11 @@ class LiveSession(PageTest):
     def test_a_lost_window_lets_go(self):
         self.serve()
         x, y = self.tip()
-        ActionChains(BROWSER).move_by_offset(x, y).click_and_hold().perform()
+        self.mouse((x, y), "down")
         self.do("window.dispatchEvent(new Event('blur'))")
         time.sleep(0.2)
         self.assertEqual(len(self.server.done("release")), 1)
-        ActionChains(BROWSER).release().perform()
+        self.mouse("up")
 
     def test_modes_and_sliders_ask_the_server(self):
         self.serve()
@@ -276,8 +299,7 @@ class LiveSession(PageTest):
         self.serve(writer=False)
         self.assertIn("Watching only", BROWSER.find_element(By.CSS_SELECTOR, ".vv-status").text)
         x, y = self.tip()
-        ActionChains(BROWSER, duration=60).move_by_offset(x, y).click_and_hold().move_by_offset(
-            20, 20).release().perform()
+        self.mouse((x, y), "down", (x + 20, y + 20), "up")
         time.sleep(0.2)
         self.assertEqual(self.server.done("grab") + self.server.done("drag"), [])
 

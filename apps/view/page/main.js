@@ -36,6 +36,7 @@ function exposed(view) {
     picture: () => view.exports.picture().toDataURL("image/png"),
     renderer: stage.rendererName,
     get shownAt() { return stage.shownAt; },
+    drawn: () => stage.frames,
     triangles: view.nodes.triangles,
     scriptTimes: stage.scriptTimes,
     latencies: view.session ? view.session.latencies : [],

@@ -1,8 +1,9 @@
 // The mechanism as nodes of three.js: one per link, with its body and its halves of the joints.
 
 class MechanismNodes {
-  constructor(scene, shapes) {
+  constructor(scene, shapes, plain) {
     this.scene = scene;
+    this.plain = plain;
     this.shapes = shapes;
     this.root = new THREE.Group();
     this.parts = [];         // meshes that can be picked; userData {kind, index, link}
@@ -41,8 +42,8 @@ class MechanismNodes {
   }
 
   addPart(geometry, colour, userData) {
-    const material = new THREE.MeshStandardMaterial({
-      color: shade(colour), roughness: 0.62, metalness: 0.05});
+    const material = this.plain ? new THREE.MeshLambertMaterial({color: shade(colour)})
+        : new THREE.MeshStandardMaterial({color: shade(colour), roughness: 0.62, metalness: 0.05});
     const mesh = new THREE.Mesh(geometry, material);
     mesh.castShadow = mesh.receiveShadow = true;
     mesh.userData = userData;

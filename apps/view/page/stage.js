@@ -11,10 +11,12 @@ class Stage {
     box.append(this.canvas);
     this.world = new THREE.Scene();
     this.eye = new Eye(view.shapes.up, view.shapes.sizes.length);
+    this.frames = 0;
     this.scriptTimes = [];
     this.before = new Set();  // called with the time in seconds before each frame
     this.after = [];          // called once after the next frame
-    this.renderer = makeRenderer(this.canvas);
+    this.plain = drawnBySoftware();
+    this.renderer = makeRenderer(this.canvas, this.plain);
     this.rendererName = this.renderer ? nameOfRenderer(this.renderer.getContext()) : null;
     this.addLights();
     this.addFloor();
@@ -31,7 +33,7 @@ class Stage {
     this.sky = new THREE.HemisphereLight(0xffffff, 0x9aa4ae, 0.72);
     this.sky.position.fromArray(up);
     this.sun = new THREE.DirectionalLight(0xfff6ea, 0.72);
-    this.sun.castShadow = true;
+    this.sun.castShadow = !this.plain;
     this.sun.shadow.mapSize.set(1024, 1024);
     this.sun.shadow.radius = 3;
     this.sun.shadow.bias = -0.0012;
@@ -132,6 +134,7 @@ class Stage {
 
   draw() {
     this.dirty = false;
+    ++this.frames;
     this.eye.apply();
     this.fill.position.fromArray(sum(this.eye.back(), this.eye.above(), 0.35));
     if (this.renderer) this.renderer.render(this.world, this.eye.camera);
@@ -156,16 +159,29 @@ class Stage {
   }
 }
 
+function contextOf(canvas, settings) {
+  return canvas.getContext("webgl2", settings) || canvas.getContext("webgl", settings);
+}
+
+// Without a graphics processor the picture does without shadows and smooth edges, so that it follows
+// the hand; an address that ends in #fine has them all the same.
+function drawnBySoftware() {
+  if (location.hash === "#fine") return false;
+  const context = contextOf(document.createElement("canvas"), {});
+  if (!context) return false;
+  const name = nameOfRenderer(context), loss = context.getExtension("WEBGL_lose_context");
+  if (loss) loss.loseContext();
+  return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
+}
+
 // Null where the browser has no WebGL.
-function makeRenderer(canvas) {
-  const settings = {antialias: true, alpha: false, powerPreference: "default"};
-  let context = null;
-  for (const name of ["webgl2", "webgl"]) context = context || canvas.getContext(name, settings);
+function makeRenderer(canvas, plain) {
+  const context = contextOf(canvas, {antialias: !plain, alpha: false});
   if (!context) return null;
-  const renderer = new THREE.WebGLRenderer({canvas: canvas, context: context, antialias: true});
+  const renderer = new THREE.WebGLRenderer({canvas: canvas, context: context});
   renderer.gammaOutput = true;
   renderer.gammaFactor = 2.2;
-  renderer.shadowMap.enabled = true;
+  renderer.shadowMap.enabled = !plain;
   renderer.shadowMap.type = THREE.PCFSoftShadowMap;
   return renderer;
 }

@@ -36,7 +36,7 @@ class View {
     const {scene} = this;
     this.boxes = boxes;
     this.stage = new Stage(this, boxes.stage);
-    this.nodes = new MechanismNodes(scene, this.shapes);
+    this.nodes = new MechanismNodes(scene, this.shapes, this.stage.plain);
     this.marks = new Marks(scene, this.nodes, this.shapes);
     this.forces = new Forces(this);
     this.paths = new Paths(this);
