@@ -84,7 +84,12 @@ class Chart {
     listen(this.canvas, {
       pointerdown: (event) => this.seek(event),
       pointermove: (event) => { if (event.buttons & 1) this.seek(event); }});
-    new ResizeObserver(() => { this.stale = true; this.draw(); }).observe(this.canvas);
+    // The width is kept, because asking for it at each frame would lay the page out anew.
+    new ResizeObserver(() => {
+      this.wide = this.canvas.clientWidth;
+      this.stale = true;
+      this.draw();
+    }).observe(this.canvas);
     this.stale = true;
   }
 
@@ -103,7 +108,7 @@ class Chart {
   }
 
   draw() {
-    const width = this.canvas.clientWidth;
+    const width = this.wide;
     if (!width) return;
     const ratio = Math.min(2, window.devicePixelRatio || 1);
     if (this.stale || this.view.live || this.width !== width || this.ratio !== ratio) {

@@ -61,9 +61,8 @@ class Spring {
 
   placeLabel() {
     if (this.label.hidden) return;
-    const {stage} = this.view, at = stage.screenOf(this.hand.position.toArray());
-    const box = stage.canvas.getBoundingClientRect();
-    this.label.style.transform = "translate(" + (at[0] - box.left + 14).toFixed(1) + "px," +
-        (at[1] - box.top - 12).toFixed(1) + "px)";
+    const at = this.view.stage.pixelOf(this.hand.position.toArray());
+    this.label.style.transform = "translate(" + (at[0] + 14).toFixed(1) + "px," +
+        (at[1] - 12).toFixed(1) + "px)";
   }
 }

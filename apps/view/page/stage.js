@@ -97,6 +97,7 @@ class Stage {
 
   resize() {
     const width = Math.max(1, this.box.clientWidth), height = Math.max(1, this.box.clientHeight);
+    Object.assign(this, {width, height});
     this.eye.aspect = width / height;
     if (this.renderer) {
       this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
@@ -142,11 +143,17 @@ class Stage {
     this.view.emit("drawn");
   }
 
-  // Pixels of a point of the world, from the picture's upper left corner of the page.
+  // Pixels of a point of the world within the picture.
+  pixelOf(point) {
+    const v = vectorOf(point).project(this.eye.camera);
+    return [0.5 * (1 + v.x) * this.width, 0.5 * (1 - v.y) * this.height];
+  }
+
+  // Pixels of a point of the world in the window, where a mouse would point at it.
   screenOf(point) {
     this.eye.apply();
-    const v = vectorOf(point).project(this.eye.camera), box = this.canvas.getBoundingClientRect();
-    return [box.left + 0.5 * (1 + v.x) * box.width, box.top + 0.5 * (1 - v.y) * box.height];
+    const at = this.pixelOf(point), box = this.canvas.getBoundingClientRect();
+    return [box.left + at[0], box.top + at[1]];
   }
 
   // A ray of three.js through a mouse position.

@@ -83,7 +83,7 @@ class View {
   }
 
   fit() {
-    const covered = Math.min(0.3, kToolsHeight / this.stage.canvas.clientHeight);
+    const covered = Math.min(0.3, kToolsHeight / this.stage.height);
     this.stage.eye.fit(this.swept, 0.1 * this.shapes.sizes.length, covered);
     this.looked();
   }
