@@ -35,9 +35,9 @@ class PageTest(unittest.TestCase):
     def expected_errors(self):
         return []
 
-    def open(self, scene, name="page"):
+    def open(self, scene, name="page", packed=False):
         path = FOLDER / f"{name}.html"
-        path.write_text(page_html(scene), encoding="utf-8")
+        path.write_text(page_html(scene, packed), encoding="utf-8")
         BROWSER.get(path.as_uri())
         self.wait("return Boolean(window.vmechView)")
 
@@ -82,6 +82,11 @@ class Picture(PageTest):
             }
             return found.size""")
         self.assertGreater(colours, 20)
+
+    def test_opens_from_packed_code_in_little_room(self):
+        self.open(scenes.slider_crank(719), "packed", packed=True)
+        self.assertTrue(self.do("return vmechView.renderer"))
+        self.assertLess((FOLDER / "packed.html").stat().st_size, 700_000)
 
     def test_rests_while_nothing_changes(self):
         self.open(scenes.FourBar().scene())

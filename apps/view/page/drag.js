@@ -35,7 +35,7 @@ class Drag {
     this.pointer = event.pointerId;
     this.plane.setFromNormalAndCoplanarPoint(vectorOf(view.stage.eye.back()), vectorOf(hit.point));
     this.to = hit.point.slice();
-    this.aimed = performance.now();
+    this.aimed = event.timeStamp;
     this.active = true;
     this.moved = false;
     this.picked = hit;
@@ -50,13 +50,20 @@ class Drag {
     const point = this.view.stage.rayAt(event).ray.intersectPlane(this.plane, this.hit);
     if (!point || ![point.x, point.y, point.z].every(Number.isFinite)) return;
     this.to = [point.x, point.y, point.z];
-    this.aimed = performance.now();
+    this.aimed = event.timeStamp;
     this.moved = true;
+    this.send();
+    this.fresh = true;
   }
 
-  // Sent at every frame, because the held point moves with its link.
-  tick() {
+  send() {
     this.view.session.send({do: "drag", to: this.to, sent: this.aimed});
+  }
+
+  // Sent again at every frame without a movement, so that the server knows that the hand is there.
+  tick() {
+    if (!this.fresh) this.send();
+    this.fresh = false;
   }
 
   end(keep) {

@@ -44,12 +44,12 @@ class Values {
   // A row whose number is read again at each filling.
   row(body, name, unitName, read, word) {
     const out = make("td", {class: "vv-number"});
-    const certainty = word ? make("td", {class: "vv-word"}) : null;
+    const certainty = make("td", {class: "vv-word"});
     body.append(make("tr", {}, make("th", {text: name, scope: "row"}), out,
         make("td", {class: "vv-unit", text: unitName}), certainty));
     this.rows.push(() => {
       setText(out, shown(read()));
-      if (certainty) setText(certainty, word());
+      if (word) setText(certainty, word());
     });
   }
 
