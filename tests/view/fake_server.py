@@ -1,4 +1,4 @@
-"""A server of a live session made of the standard library: it serves one page and answers its socket.
+"""A server of a live session made of the standard library: one page and its socket.
 
 It keeps every message of the page, and tells of a crank that follows the mouse.
 """
@@ -114,7 +114,8 @@ class FakeServer:
                  "wrenches": [[3, 4, 0, 0, 0, 0]] * 4, "at_limit": self.at_limit,
                  "closure": 1e-15, "stopped": False, "rows": len(self.messages)}
         if self.hand and self.hand["target"]:
-            tip = [self.mechanism.crank * math.cos(theta), self.mechanism.crank * math.sin(theta), 0]
+            long = self.mechanism.crank
+            tip = [long * math.cos(theta), long * math.sin(theta), 0]
             state["hand"] = {"link": 1, "point": tip, "target": self.hand["target"],
                              "force": [3, 4, 0], "moment": [0, 0, 0]}
         if self.echo is not None:

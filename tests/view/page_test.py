@@ -83,6 +83,22 @@ class Picture(PageTest):
             return found.size""")
         self.assertGreater(colours, 20)
 
+    def test_is_missed_in_words_without_webgl_and_the_rest_works(self):
+        script = BROWSER.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": """
+            const real = HTMLCanvasElement.prototype.getContext;
+            HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+              return kind.startsWith("webgl") ? null : real.call(this, kind, ...rest);
+            };"""})
+        try:
+            self.open(scenes.FourBar().scene())
+        finally:
+            BROWSER.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", script)
+        self.assertIsNone(self.do("return vmechView.renderer"))
+        self.assertIn("WebGL is missing", BROWSER.find_element(By.CSS_SELECTOR, ".vv-missing").text)
+        self.do("vmechView.play()")
+        self.wait("return vmechView.poseIndex() > 3")
+        self.assertTrue(BROWSER.find_elements(By.CSS_SELECTOR, ".vv-chart"))
+
     def test_opens_from_packed_code_in_little_room(self):
         self.open(scenes.slider_crank(719), "packed", packed=True)
         self.assertTrue(self.do("return vmechView.renderer"))
@@ -187,8 +203,8 @@ class Names(PageTest):
         for kind in ("joint", "link", "grasp"):
             self.do("vmechView.pick(arguments[0], 0)", kind)
         self.assertIsNone(self.do("return window.stolen || null"))
-        self.assertEqual(BROWSER.find_elements(By.CSS_SELECTOR, "#vmech-view img, #vmech-view script"),
-                         [])
+        injected = "#vmech-view img, #vmech-view script"
+        self.assertEqual(BROWSER.find_elements(By.CSS_SELECTOR, injected), [])
         self.item(scene["links"][1]["name"])
         self.assertEqual(BROWSER.title, scene["title"])
 
@@ -244,11 +260,12 @@ class LiveSession(PageTest):
         x, y = self.tip()
         goal = self.do("return vmechView.screenOf([0, arguments[0], 0])", 0.6 * self.bar.crank)
         self.mouse((x, y), "down", (x + 1, y - 2), goal)
-        self.wait("return vmechView.latencies.length > 2")
+        self.wait("return vmechView.latencies.length > 0")
         self.wait("return vmechView.now().coordinates[0] > 1.4")
         self.assertEqual(self.server.done("grab")[0]["link"], 1)
         last = self.server.done("drag")[-1]["to"]
-        self.assertLess(math.dist(self.do("return vmechView.screenOf(arguments[0])", last), goal), PIXEL)
+        aimed = self.do("return vmechView.screenOf(arguments[0])", last)
+        self.assertLess(math.dist(aimed, goal), PIXEL)
         self.assertEqual(BROWSER.find_element(By.CSS_SELECTOR, ".vv-force").text, "5.000 N")
         self.mouse("up")
         self.wait("return !document.querySelector('.vv-canvas').classList.contains('vv-holding')")

@@ -39,6 +39,7 @@ class Drag {
     this.active = true;
     this.moved = false;
     this.picked = hit;
+    view.hover(null, null);
     view.session.send({do: "grab", link: hit.link, point: point});
     view.stage.before.add(this.tick);
     view.stage.ask();

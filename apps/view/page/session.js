@@ -31,6 +31,8 @@ class Session {
 
   lose() {
     this.become("gone");
+    this.view.now.hand = null;
+    this.view.moved();
     setTimeout(() => this.connect(), kRetry);
   }
 

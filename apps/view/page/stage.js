@@ -170,8 +170,8 @@ function contextOf(canvas, settings) {
   return canvas.getContext("webgl2", settings) || canvas.getContext("webgl", settings);
 }
 
-// Without a graphics processor the picture does without shadows and smooth edges, so that it follows
-// the hand; an address that ends in #fine has them all the same.
+// Without a graphics processor the picture does without shadows and smooth edges, so that it
+// follows the hand; an address that ends in #fine has them all the same.
 function drawnBySoftware() {
   if (location.hash === "#fine") return false;
   const context = contextOf(document.createElement("canvas"), {});

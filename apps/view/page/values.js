@@ -86,8 +86,9 @@ class Values {
     const body = this.table();
     joint.freedoms.forEach((freedom, k) => {
       const {name, factor} = freedomUnit(scene, freedom);
-      this.row(body, freedom.name || "coordinate", name, () => factor * now.coordinates[joint.at + k]);
-      this.row(body, "rate", name + "/s", () => factor * now.rates[joint.at + k]);
+      const at = joint.at + k;
+      this.row(body, freedom.name || "coordinate", name, () => factor * now.coordinates[at]);
+      this.row(body, "rate", name + "/s", () => factor * now.rates[at]);
     });
     kWrenchNames.forEach((name, k) => this.row(body, name, k < 3 ? "N" : "N m",
         () => (now.wrenches ? now.wrenches[6 * index + k] : NaN),

@@ -162,7 +162,8 @@ class View {
     setText(boxes.name, list[hovered.index].name);
     const left = event.clientX - box.left;
     boxes.name.style.transform = "translate(" + (left + 14) + "px," +
-        (event.clientY - box.top + 14) + "px)" + (left > 0.6 * box.width ? " translateX(-105%)" : "");
+        (event.clientY - box.top + 14) + "px)" +
+        (left > 0.6 * box.width ? " translateX(-105%)" : "");
   }
 
   // What is under the mouse: {kind, index, link, point in the world} or null.
