@@ -78,6 +78,7 @@ class Drag {
     if (!this.active) return;
     this.active = false;
     this.view.stage.before.delete(this.tick);
+    this.view.stage.ask();
     this.view.stage.canvas.classList.remove("vv-holding");
     const {canvas} = this.view.stage;
     if (canvas.hasPointerCapture(this.pointer)) canvas.releasePointerCapture(this.pointer);

@@ -1,6 +1,7 @@
 // The picture: renderer, lights, floor and the loop, which draws only when something has changed.
 
 const kKeptTimes = 600;  // frames whose times are kept
+const kCoarse = 0.6;
 
 class Stage {
   constructor(view, box) {
@@ -100,11 +101,29 @@ class Stage {
     Object.assign(this, {width, height});
     this.eye.aspect = width / height;
     if (this.renderer) {
-      this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
+      this.renderer.setPixelRatio(this.ratio());
       this.renderer.setSize(width, height, false);
     }
     this.triad.resize();
     this.invalidate();
+  }
+
+  // Pixels of the picture to one of the page. Where software draws, a moving picture is coarser, so
+  // that it follows the hand; it becomes fine when it rests.
+  ratio() {
+    const coarse = this.plain && this.before.size > 0 && !this.recording;
+    return coarse ? kCoarse : Math.min(2, window.devicePixelRatio || 1);
+  }
+
+  // Whether the picture has another fineness than it should.
+  isUnlike() {
+    return Boolean(this.renderer) && this.renderer.getPixelRatio() !== this.ratio();
+  }
+
+  sharpen() {
+    if (!this.isUnlike()) return;
+    this.renderer.setPixelRatio(this.ratio());
+    this.dirty = true;
   }
 
   invalidate() {
@@ -123,6 +142,7 @@ class Stage {
     this.asked = false;
     const begin = performance.now();
     for (const work of this.before) work(stamp / 1000);
+    this.sharpen();
     if (this.dirty) this.draw();
     const after = this.after;
     this.after = [];
@@ -130,7 +150,7 @@ class Stage {
     this.shownAt = this.shownAt || performance.now();  // ms from the beginning of the page
     if (this.scriptTimes.length === kKeptTimes) this.scriptTimes.shift();
     this.scriptTimes.push(performance.now() - begin);
-    if (this.before.size) this.ask();
+    if (this.before.size || this.isUnlike()) this.ask();
   }
 
   draw() {
