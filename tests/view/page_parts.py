@@ -1,5 +1,7 @@
 """Puts a page together from its parts, as the vmech program does."""
 
+import base64
+import gzip
 import json
 import pathlib
 
@@ -23,11 +25,24 @@ def scene_element(scene):
     return f'<script type="application/json" id="vmech-scene">{text}</script>'
 
 
-def page_html(scene, page=PAGE, three=THREE):
+def packed_elements(three, page=PAGE):
+    """All code as one packed element, and the script that unpacks it."""
+    code = three.read_text(encoding="utf-8") + "\n" + page_script(page)
+    packed = base64.b64encode(gzip.compress(code.encode(), 9, mtime=0)).decode()
+    element = f'<script type="application/octet-stream" id="vmech-code">{packed}</script>'
+    return element, script_element((page / "unpack.js").read_text(encoding="utf-8"))
+
+
+def page_html(scene, packed=False, page=PAGE, three=THREE):
+    if packed:
+        library, script = packed_elements(three, page)
+    else:
+        library = script_element(three.read_text(encoding="utf-8"))
+        script = script_element(page_script(page))
     parts = {
         "style": "<style>\n" + (page / "style.css").read_text(encoding="utf-8") + "</style>",
-        "three": script_element(three.read_text(encoding="utf-8")),
-        "script": script_element(page_script(page)),
+        "three": library,
+        "script": script,
         "scene": scene_element(scene),
     }
     text = (page / "page.html").read_text(encoding="utf-8")

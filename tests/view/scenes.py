@@ -74,7 +74,7 @@ def motion_of(times, cycle, axis, poses, coordinates, wrenches, certainty, **mor
 
 
 class FourBar:
-    """Crank, coupler and rocker on a ground of length `ground`; the coupler's point is off its bar."""
+    """Crank, coupler and rocker on the ground; the coupler's point is beside its bar."""
 
     crank, coupler, rocker, ground = 0.05, 0.16, 0.12, 0.15
     point = [0.09, 0.07, 0.0]
@@ -147,7 +147,8 @@ def slider_crank(count=360):
              link("crank", {"shaft": (0, 0, 0), "pin": (crank, 0, 0)}),
              link("rod", {"big end": (0, 0, 0), "small end": (rod, 0, 0)}),
              link("piston", {"pin": (0, 0, 0), "guide": sideways}, 0.6)]
-    joints = [joint("main", "revolute", (0, 0), (1, 0)), joint("big end", "revolute", (1, 1), (2, 0)),
+    joints = [joint("main", "revolute", (0, 0), (1, 0)),
+              joint("big end", "revolute", (1, 1), (2, 0)),
               joint("small end", "revolute", (2, 1), (3, 0)),
               joint("guide", "prismatic", (0, 1), (3, 1), (False,), cut=True)]
 
@@ -212,7 +213,8 @@ def hexapod(count=180, legs=6):
     wrenches = [[[5 * math.cos(t + j), 4 * math.sin(t), 20 + 8 * math.sin(t + j), 0, 0, 0.5]
                  for j in range(len(joints))] for t in turns]
     scene = scene_of("Hexapod", 0.5, [0, 0, -9.81], links, joints, *at(0))
-    scene["grasps"] = [{"name": "tool", "link": 1, "point": False, "pose": [0, 0, 0.06, 1, 0, 0, 0]}]
+    scene["grasps"] = [{"name": "tool", "link": 1, "point": False,
+                        "pose": [0, 0, 0.06, 1, 0, 0, 0]}]
     scene["motion"] = motion_of(
         [2 * i / count for i in range(count)], 2.0,
         {"label": "time", "unit": "s", "values": [2 * i / count for i in range(count)]},

@@ -85,7 +85,8 @@ class Eye {
   }
 
   zoom(factor) {
-    this.distance = Math.max(0.05 * this.length, Math.min(60 * this.length, this.distance * factor));
+    this.distance = Math.max(0.05 * this.length,
+        Math.min(60 * this.length, this.distance * factor));
   }
 
   // Brings all points into the picture, seen from where the eye is; `top` is the part of the height

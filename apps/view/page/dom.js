@@ -1,4 +1,5 @@
-// Elements of the page. Text goes in as text, never as markup, so that a name cannot inject anything.
+// Elements of the page. Text goes in as text, never as markup, so that a name cannot
+// inject anything.
 
 // An element with a class, text, attributes and listeners.
 // make("button", {class: "a", text: "Go", title: "..", on: {click: f}}, child, ...)

@@ -35,10 +35,11 @@ class Drag {
     this.pointer = event.pointerId;
     this.plane.setFromNormalAndCoplanarPoint(vectorOf(view.stage.eye.back()), vectorOf(hit.point));
     this.to = hit.point.slice();
-    this.aimed = performance.now();
+    this.aimed = event.timeStamp;
     this.active = true;
     this.moved = false;
     this.picked = hit;
+    view.hover(null, null);
     view.session.send({do: "grab", link: hit.link, point: point});
     view.stage.before.add(this.tick);
     view.stage.ask();
@@ -50,13 +51,20 @@ class Drag {
     const point = this.view.stage.rayAt(event).ray.intersectPlane(this.plane, this.hit);
     if (!point || ![point.x, point.y, point.z].every(Number.isFinite)) return;
     this.to = [point.x, point.y, point.z];
-    this.aimed = performance.now();
+    this.aimed = event.timeStamp;
     this.moved = true;
+    this.send();
+    this.fresh = true;
   }
 
-  // Sent at every frame, because the held point moves with its link.
-  tick() {
+  send() {
     this.view.session.send({do: "drag", to: this.to, sent: this.aimed});
+  }
+
+  // Sent again at every frame without a movement, so that the server knows that the hand is there.
+  tick() {
+    if (!this.fresh) this.send();
+    this.fresh = false;
   }
 
   end(keep) {
@@ -70,6 +78,7 @@ class Drag {
     if (!this.active) return;
     this.active = false;
     this.view.stage.before.delete(this.tick);
+    this.view.stage.ask();
     this.view.stage.canvas.classList.remove("vv-holding");
     const {canvas} = this.view.stage;
     if (canvas.hasPointerCapture(this.pointer)) canvas.releasePointerCapture(this.pointer);

@@ -43,11 +43,13 @@ class Exports {
     const stream = stage.canvas.captureStream(kVideoRate);
     const recorder = new MediaRecorder(stream, {videoBitsPerSecond: 8e6});
     this.recorder = recorder;
+    stage.recording = true;
     setText(button, "Stop");
     listen(recorder, {
       dataavailable: (event) => parts.push(event.data),
       stop: () => {
         this.recorder = null;
+        stage.recording = false;
         clearTimeout(this.timer);
         setText(button, "Video");
         for (const track of stream.getTracks()) track.stop();

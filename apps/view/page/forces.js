@@ -131,7 +131,8 @@ class Forces {
       if (index === this.scene.ground || !(link.mass > 0) || !(this.largest.weight > 0)) return;
       place(now.poses, 7 * index, link.centre, point);
       const size = link.mass * lengthOf(g) / this.largest.weight;
-      this.pools.weight.add(point, g[0], g[1], g[2], 0.22 * this.length * this.scaleUp * size, false);
+      const long = 0.22 * this.length * this.scaleUp * size;
+      this.pools.weight.add(point, g[0], g[1], g[2], long, false);
     });
   }
 

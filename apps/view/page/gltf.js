@@ -55,7 +55,7 @@ class GltfWriter {
     return {attributes: {
       POSITION: this.accessor(position.array, 3, "VEC3", kGltfVertices, true),
       NORMAL: this.accessor(unitNormals(normal.array), 3, "VEC3", kGltfVertices, false)},
-    material: this.material(mesh.material.color)};
+    material: this.material(mesh.userData.colour)};
   }
 
   material(colour) {
@@ -99,7 +99,7 @@ class GltfWriter {
   }
 }
 
-// Three places of a link over the motion, or its four quaternion components in the order x, y, z, w.
+// Three places of a link over the motion, or its quaternion in the order x, y, z, w.
 function track(motion, link, rows, begin, width) {
   const values = new Float32Array(rows * width);
   for (let i = 0; i < rows; ++i) {

@@ -36,7 +36,10 @@ function liveSets(view, index) {
   });
   for (const [begin, title, unitName] of [[0, "force on the second link", "N"],
     [3, "moment on the second link", "N m"]]) {
-    const value = (i, k) => (history.wrenches[i] ? history.wrenches[i][6 * index + begin + k] : NaN);
+    const value = (i, k) => {
+      const row = history.wrenches[i];
+      return row ? row[6 * index + begin + k] : NaN;
+    };
     add(title, unitName, [...["x", "y", "z"].map((axis, k) => ({name: axis,
       at: (i) => value(i, k)})), {name: "size", strong: true,
       at: (i) => Math.hypot(value(i, 0), value(i, 1), value(i, 2))}]);

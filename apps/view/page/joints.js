@@ -103,14 +103,11 @@ class JointSymbols {
   universal(parts, at) {
     const {rod} = this.sizes, half = 1.9 * rod;
     const bar = (solid, matrix, axis) => {
-      const end = vectorOf(axis).multiplyScalar(half).applyMatrix4(matrix).toArray();
-      const begin = vectorOf(axis).multiplyScalar(-half).applyMatrix4(matrix).toArray();
-      solid.cylinder(begin, end, 0.7 * rod);
-      const cap = 0.8, grown = 1.05 * rod;
-      for (const side of [-1, 1]) {
-        const from = vectorOf(axis).multiplyScalar(side * half * cap).applyMatrix4(matrix).toArray();
-        const to = vectorOf(axis).multiplyScalar(side * half * 1.2).applyMatrix4(matrix).toArray();
-        solid.cylinder(from, to, grown);
+      const along = (distance) => vectorOf(axis).multiplyScalar(distance).applyMatrix4(matrix)
+          .toArray();
+      solid.cylinder(along(-half), along(half), 0.7 * rod);
+      for (const side of [-half, half]) {
+        solid.cylinder(along(0.8 * side), along(1.2 * side), 1.05 * rod);
       }
     };
     bar(parts.first, at.first, kUnit[0]);
@@ -155,7 +152,8 @@ class JointSymbols {
     return Math.max(0, joint.freedoms.findIndex((freedom) => !freedom.rotation));
   }
 
-  // How far a sliding joint goes: within the motion, its limits, or a part of the mechanism's length.
+  // How far a sliding joint goes: within the motion, its limits, or a part of the
+  // mechanism's length.
   travel(index, freedom) {
     const joint = this.scene.joints[index], at = joint.at + freedom, motion = this.scene.motion;
     const start = this.scene.start.coordinates ? this.scene.start.coordinates[at] || 0 : 0;
@@ -171,8 +169,8 @@ class JointSymbols {
       low -= 0.2 * this.sizes.length;
       high += 0.2 * this.sizes.length;
     }
-    if (settings && Number.isFinite(settings.lower) && settings.lower !== null) low = settings.lower;
-    if (settings && Number.isFinite(settings.upper) && settings.upper !== null) high = settings.upper;
+    if (settings && Number.isFinite(settings.lower)) low = settings.lower;
+    if (settings && Number.isFinite(settings.upper)) high = settings.upper;
     return [low, high];
   }
 }

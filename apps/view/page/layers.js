@@ -27,9 +27,8 @@ function contactsOf(scene, link) {
 // The common axis of a link's pins, or null if they are not parallel or stand one above the other.
 function flatNormal(contacts, thickness) {
   const pins = contacts.filter((contact) => contact.pin);
-  if (!pins.length || contacts.some((contact) => ["spherical", "universal"].includes(contact.type))) {
-    return null;
-  }
+  const turnsAllWays = (contact) => ["spherical", "universal"].includes(contact.type);
+  if (!pins.length || contacts.some(turnsAllWays)) return null;
   const n = pins[0].axis;
   if (pins.some((pin) => !isParallel(pin.axis, n))) return null;
   const heights = contacts.filter((contact) => contact.type !== "grasp")

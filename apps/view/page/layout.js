@@ -3,7 +3,8 @@
 function buildLayout(view) {
   const boxes = {
     stage: make("div", {class: "vv-stage"}), player: make("div", {class: "vv-player"}),
-    tree: make("div", {}), show: make("div", {}), values: make("div", {}), plots: make("div", {class: "vv-plots"}),
+    tree: make("div", {}), show: make("div", {}), values: make("div", {}),
+    plots: make("div", {class: "vv-plots"}),
     live: make("div", {}), name: make("div", {class: "vv-tip", hidden: "", role: "tooltip"}),
     banner: make("div", {class: "vv-banner", hidden: "", role: "alert"}),
     note: make("div", {class: "vv-note", hidden: "", role: "status"})};
@@ -47,13 +48,15 @@ function buildTools(view) {
           button("Theme", "Dark or light", () => view.theme.toggle())),
       make("div", {class: "vv-tools vv-right", role: "toolbar", "aria-label": "Save"},
           button("PNG", "Save a picture of the view", () => view.exports.savePicture()),
-          button("glTF", "Save the mechanism and its motion as glTF", () => view.exports.saveGltf()),
+          button("glTF", "Save the mechanism and its motion as glTF",
+              () => view.exports.saveGltf()),
           canRecord(view) ? button("Video", "Record one cycle as a video",
               (element) => view.exports.toggleVideo(element)) : null));
 }
 
 function canRecord(view) {
-  return typeof MediaRecorder !== "undefined" && Boolean(view.stage.canvas.captureStream);
+  return Boolean(typeof MediaRecorder !== "undefined" && view.stage.renderer &&
+      view.stage.canvas.captureStream);
 }
 
 // Space plays, arrows step, f fits, escape lets go.

@@ -84,7 +84,8 @@ class LivePanel {
     }}}, make("option", {value: -1, text: "compare with none"}), ...message.modes.map(
         (_, index) => make("option", {value: index, text: "compare with mode " + (index + 1)})));
     this.modes.replaceChildren(
-        make("p", {class: "vv-hint", text: message.modes.length + " found. " + (message.note || "")}),
+        make("p", {class: "vv-hint",
+          text: message.modes.length + " found. " + (message.note || "")}),
         make("div", {class: "vv-row"}, ...message.modes.map((_, index) => make("button",
             {class: "vv-button", text: "Mode " + (index + 1),
               on: {click: () => this.session.send({do: "mode", index: index})}}))), compare);
@@ -118,10 +119,13 @@ class LivePanel {
     this.figure("time", shown(state.time), "s");
     if (state.hand) this.figure("force of the hand", shown(lengthOf(state.hand.force)), "N");
     else this.drop("force of the hand");
-    this.figure("loops open by", shown(state.closure), "");
+    if (Number.isFinite(state.closure)) {
+      this.figure("loops open by", state.closure.toExponential(1), "");
+    }
     if (state.rows !== undefined) this.figure("drag recorded", String(state.rows), "rows");
     const limits = (state.at_limit || []).map((joint) => this.view.scene.joints[joint].name);
-    if (limits.length) this.figure("at a limit", limits.join(", "), ""); else this.drop("at a limit");
+    if (limits.length) this.figure("at a limit", limits.join(", "), "");
+    else this.drop("at a limit");
     if (state.haptic) this.showHaptic(state.haptic);
     for (const slider of this.sliders || []) this.fillSlider(slider, state);
     if (state.stopped) this.view.say("The session has stopped.");

@@ -19,7 +19,8 @@ function exposed(view) {
   const {stage, now, player} = view;
   return {
     scene: view.scene,
-    poses: () => view.scene.links.map((_, link) => Array.from(now.poses.slice(7 * link, 7 * link + 7))),
+    poses: () => view.scene.links.map(
+        (_, link) => Array.from(now.poses.slice(7 * link, 7 * link + 7))),
     pointOf: (link, point) => place(now.poses, 7 * link, point, [0, 0, 0]),
     poseIndex: () => now.index,
     time: () => now.time,
@@ -35,6 +36,8 @@ function exposed(view) {
     gltf: () => Promise.resolve(new GltfWriter(view).write()),
     picture: () => view.exports.picture().toDataURL("image/png"),
     renderer: stage.rendererName,
+    get shownAt() { return stage.shownAt; },
+    drawn: () => stage.frames,
     triangles: view.nodes.triangles,
     scriptTimes: stage.scriptTimes,
     latencies: view.session ? view.session.latencies : [],

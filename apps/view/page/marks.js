@@ -84,12 +84,11 @@ class Marks {
 
   // The range of a turning freedom as a sector, of a sliding one as two stops.
   addLimit(joint, index, freedom, k) {
-    const limited = [freedom.lower, freedom.upper].every((value) => Number.isFinite(value) &&
-        value !== null);
-    if (!limited || !["revolute", "cylindrical", "prismatic", "screw"].includes(joint.type)) return;
+    if (!Number.isFinite(freedom.lower) || !Number.isFinite(freedom.upper)) return;
+    if (!kPinTypes.includes(joint.type) && joint.type !== "prismatic") return;
     const pose = anchorOf(this.scene, joint, "first").pose, {bar, rod} = this.sizes;
-    const material = new THREE.MeshBasicMaterial({color: shade(0xd9822b), transparent: true, opacity: 0.4,
-      side: THREE.DoubleSide, depthWrite: false});
+    const material = new THREE.MeshBasicMaterial({color: shade(0xd9822b), transparent: true,
+      opacity: 0.4, side: THREE.DoubleSide, depthWrite: false});
     const group = new THREE.Group();
     if (freedom.rotation) {
       const sweep = Math.min(2 * Math.PI, freedom.upper - freedom.lower);

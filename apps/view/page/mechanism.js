@@ -1,8 +1,11 @@
 // The mechanism as nodes of three.js: one per link, with its body and its halves of the joints.
 
+const kLimitColour = new THREE.Color(0xd01810).convertSRGBToLinear();
+
 class MechanismNodes {
-  constructor(scene, shapes) {
+  constructor(scene, shapes, plain) {
     this.scene = scene;
+    this.plain = plain;
     this.shapes = shapes;
     this.root = new THREE.Group();
     this.parts = [];         // meshes that can be picked; userData {kind, index, link}
@@ -30,7 +33,7 @@ class MechanismNodes {
     const joint = this.scene.joints[index], solids = symbols.solidsOf(index), meshes = [];
     const add = (solid, link, colour) => {
       if (solid.empty) return;
-      const mesh = this.addPart(solid.geometry(), colour, {kind: "joint", index: index, link: link});
+      const mesh = this.addPart(solid.geometry(), colour, {kind: "joint", index, link});
       this.links[link].add(mesh);
       meshes.push(mesh);
     };
@@ -41,11 +44,11 @@ class MechanismNodes {
   }
 
   addPart(geometry, colour, userData) {
-    const material = new THREE.MeshStandardMaterial({
-      color: shade(colour), roughness: 0.62, metalness: 0.05});
+    const material = this.plain ? new THREE.MeshLambertMaterial({color: shade(colour)})
+        : new THREE.MeshStandardMaterial({color: shade(colour), roughness: 0.62, metalness: 0.05});
     const mesh = new THREE.Mesh(geometry, material);
     mesh.castShadow = mesh.receiveShadow = true;
-    mesh.userData = userData;
+    mesh.userData = Object.assign({colour: material.color.clone()}, userData);
     this.parts.push(mesh);
     return mesh;
   }
@@ -60,8 +63,9 @@ class MechanismNodes {
       const own = mesh.userData;
       const is = (what) => what && what.kind === own.kind && what.index === own.index;
       const limit = own.kind === "joint" && atLimit.includes(own.index);
-      mesh.material.emissive.setHex(limit ? 0xc02018 : is(hovered) || is(picked) ? 0x4a5a6a : 0);
-      mesh.material.emissiveIntensity = limit ? 0.8 : is(hovered) ? 0.75 : 0.45;
+      mesh.material.color.copy(limit ? kLimitColour : own.colour);
+      mesh.material.emissive.setHex(is(hovered) || is(picked) ? 0x4a5a6a : 0);
+      mesh.material.emissiveIntensity = is(hovered) ? 0.75 : 0.45;
     }
   }
 
@@ -70,13 +74,13 @@ class MechanismNodes {
     const ghost = new THREE.Group();
     const material = new THREE.MeshStandardMaterial({color: shade(0x8090a0), transparent: true,
       opacity: 0.28, depthWrite: false, roughness: 1});
-    for (const node of this.links) {
+    this.links.forEach((node, link) => {
       const copy = new THREE.Group();
-      for (const mesh of node.children) {
+      for (const mesh of link === this.scene.ground ? [] : node.children) {
         if (mesh.userData.kind) copy.add(new THREE.Mesh(mesh.geometry, material));
       }
       ghost.add(copy);
-    }
+    });
     ghost.setPoses = (poses) => poseNodes(ghost.children, poses);
     return ghost;
   }
@@ -89,7 +93,7 @@ function poseNodes(nodes, poses) {
   }
 }
 
-// Points that the view should hold in axes of their links: anchors, grasps, corners of what is drawn.
+// Points that the view should hold, in axes of their links: anchors, grasps, corners of bodies.
 function pointsToFit(scene, nodes) {
   return scene.links.map((link, index) => {
     const points = link.anchors.map((anchor) => anchor.pose.slice(0, 3));

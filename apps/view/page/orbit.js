@@ -19,7 +19,6 @@ class Orbit {
   }
 
   down(event) {
-    this.canvas.focus({preventScroll: true});
     if (event.button === 0 && !event.shiftKey && !event.ctrlKey && this.pointers.size === 0 &&
         this.view.takesHold(event)) return;
     try { this.canvas.setPointerCapture(event.pointerId); } catch (error) { return; }

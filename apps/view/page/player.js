@@ -73,6 +73,7 @@ class Player {
     this.playing = false;
     this.showButton();
     this.view.stage.before.delete(this.tick);
+    this.view.stage.ask();
     this.view.emit("paused");
   }
 

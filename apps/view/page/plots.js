@@ -77,14 +77,20 @@ class Chart {
       series.mark.style.setProperty("--vv-mark", "var(" + series.colour + ")");
     });
     this.element = make("figure", {class: "vv-figure"},
-        make("figcaption", {}, make("span", {class: "vv-title", text: set.title + " [" + set.unit + "]"}),
+        make("figcaption", {},
+            make("span", {class: "vv-title", text: set.title + " [" + set.unit + "]"}),
             make("span", {class: "vv-keys"}, ...this.values)), this.canvas);
     this.pen = this.canvas.getContext("2d");
     this.curves = document.createElement("canvas");
     listen(this.canvas, {
       pointerdown: (event) => this.seek(event),
       pointermove: (event) => { if (event.buttons & 1) this.seek(event); }});
-    new ResizeObserver(() => { this.stale = true; this.draw(); }).observe(this.canvas);
+    // The width is kept, because asking for it at each frame would lay the page out anew.
+    new ResizeObserver(() => {
+      this.wide = this.canvas.clientWidth;
+      this.stale = true;
+      this.draw();
+    }).observe(this.canvas);
     this.stale = true;
   }
 
@@ -103,7 +109,7 @@ class Chart {
   }
 
   draw() {
-    const width = this.canvas.clientWidth;
+    const width = this.wide;
     if (!width) return;
     const ratio = Math.min(2, window.devicePixelRatio || 1);
     if (this.stale || this.view.live || this.width !== width || this.ratio !== ratio) {
@@ -143,8 +149,9 @@ class Chart {
       for (const series of set.series) widen(y, series.at(i));
     }
     if (!(y.high >= y.low)) Object.assign(y, {low: 0, high: 1});
-    const least = Math.max(1e-9, 1e-6 * Math.max(Math.abs(y.low), Math.abs(y.high)));
-    const room = Math.max(0.06 * (y.high - y.low), y.high - y.low < least ? 0.5 * least + 1e-9 : 0);
+    // A constant is drawn as one, not as the noise of its last digit.
+    const size = Math.max(Math.abs(y.low), Math.abs(y.high)), span = y.high - y.low;
+    const room = span > 1e-6 * size ? 0.06 * span : 0.1 * size || 1;
     y.low -= room;
     y.high += room;
     if (!(x.high > x.low)) x.high = x.low + 1;
@@ -184,8 +191,9 @@ class Chart {
     const step = around ? 90 : niceStep((x.high - x.low) / 5);
     pen.textAlign = "center";
     pen.textBaseline = "top";
-    for (let value = Math.ceil(x.low / step - 1e-9) * step; value <= x.high + 1e-9 * step; value += step) {
-      const at = this.toX(value, width), last = value + step > x.high + 1e-9 * step;
+    const end = x.high + 1e-9 * step;
+    for (let value = Math.ceil(x.low / step - 1e-9) * step; value <= end; value += step) {
+      const at = this.toX(value, width), last = value + step > end;
       line(pen, at, kChartHeight - kChartEdge.bottom, at, kChartHeight - kChartEdge.bottom + 3);
       pen.textAlign = last && at > width - 34 ? "right" : "center";
       pen.fillText(tickText(value, step) + (last ? " " + axis.unit : ""),

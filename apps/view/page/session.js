@@ -11,6 +11,7 @@ class Session {
         settings.socket + location.search;
     this.state = "connecting";  // then "writer", "watching" or "gone"
     this.last = null;           // the newest state of the server
+    this.echo = 0;              // the newest event that has come back
     this.latencies = [];        // ms from a drag to the frame that shows its effect
     this.received = 0;
     this.connect();
@@ -30,6 +31,8 @@ class Session {
 
   lose() {
     this.become("gone");
+    this.view.now.hand = null;
+    this.view.moved();
     setTimeout(() => this.connect(), kRetry);
   }
 
@@ -96,7 +99,8 @@ class Session {
   }
 
   drawn(state) {
-    if (state.echo !== undefined && state.echo !== null) {
+    if (state.echo > this.echo) {
+      this.echo = state.echo;
       this.latencies.push(performance.now() - state.echo);
       if (this.latencies.length > kHistory) this.latencies.shift();
     }

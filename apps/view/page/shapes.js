@@ -1,4 +1,5 @@
-// The body of each link: its mesh if the file has one, else bars, plates and rods between its anchors.
+// The body of each link: its mesh if the file has one, else bars, plates and rods between its
+// anchors.
 
 // Sizes of everything that is drawn, in proportion to the mechanism.
 function sizesOf(scene) {
@@ -130,7 +131,8 @@ class Shapes {
         .setPosition(vectorOf(normal).multiplyScalar(height - deep));
     solid.plate(points.map((p) => [dot(p, x), dot(p, y)]), 1.9 * bar, thick, matrix);
     for (const point of points) {
-      solid.cylinder(sum(point, normal, -deep), sum(point, normal, -1.2 * rod), 1.3 * bar, 0.7 * bar);
+      const foot = sum(point, normal, -deep), head = sum(point, normal, -1.2 * rod);
+      solid.cylinder(foot, head, 1.3 * bar, 0.7 * bar);
     }
   }
 
@@ -143,7 +145,8 @@ class Shapes {
       const matrix = new THREE.Matrix4().makeBasis(vectorOf(x), vectorOf(y), vectorOf(axis))
           .setPosition(vectorOf(sum(contact.point, axis, offset)));
       solid.plate([[0, 0], [-1.25 * bar, -tall], [1.25 * bar, -tall]], 0.78 * bar, thick, matrix);
-      const foot = matrix.clone().multiply(new THREE.Matrix4().makeTranslation(0, -tall - 0.5 * bar, 0));
+      const foot = matrix.clone().multiply(
+          new THREE.Matrix4().makeTranslation(0, -tall - 0.5 * bar, 0));
       solid.box(foot, 5.4 * bar, 0.7 * bar, 2.6 * thick);
     } else {
       const base = sum(contact.point, up, -tall);
@@ -187,5 +190,6 @@ function planeOf(points, tolerance) {
   }
   if (lengthOf(normal) < tolerance * tolerance) return null;
   normal = unit(normal);
-  return points.every((p) => Math.abs(dot(sum(p, points[0], -1), normal)) < tolerance) ? normal : null;
+  const height = (p) => Math.abs(dot(sum(p, points[0], -1), normal));
+  return points.every((p) => height(p) < tolerance) ? normal : null;
 }

@@ -83,17 +83,20 @@ class Solid {
     const normal = (x, y, z) => v.set(x, y, z).applyMatrix3(normalMatrix).normalize().toArray();
     const at = rings.map((ring) => rim.map((r) => point(
         r.x + ring.grow * r.nx, r.y + ring.grow * r.ny, ring.z)));
-    const out = rings.map((ring) => rim.map((r) => normal(r.nx * ring.nr, r.ny * ring.nr, ring.nz)));
+    const out = rings.map((ring) => rim.map(
+        (r) => normal(r.nx * ring.nr, r.ny * ring.nr, ring.nz)));
     const count = rim.length, last = rings.length - 1;
-    const centre = hull.reduce((a, p) => [a[0] + p[0] / hull.length, a[1] + p[1] / hull.length], [0, 0]);
+    const part = 1 / hull.length;
+    const centre = hull.reduce((a, p) => [a[0] + part * p[0], a[1] + part * p[1]], [0, 0]);
     const bottom = point(centre[0], centre[1], rings[0].z), down = normal(0, 0, -1);
     const top = point(centre[0], centre[1], rings[last].z), up = normal(0, 0, 1);
     for (let i = 0, j = count - 1; i < count; j = i++) {
       this.triangle(bottom, at[0][i], at[0][j], down, down, down);
       this.triangle(top, at[last][j], at[last][i], up, up, up);
       for (let k = 0; k < last; ++k) {
-        this.triangle(at[k][j], at[k][i], at[k + 1][i], out[k][j], out[k][i], out[k + 1][i]);
-        this.triangle(at[k][j], at[k + 1][i], at[k + 1][j], out[k][j], out[k + 1][i], out[k + 1][j]);
+        const p = at[k], q = at[k + 1], m = out[k], n = out[k + 1];
+        this.triangle(p[j], p[i], q[i], m[j], m[i], n[i]);
+        this.triangle(p[j], q[i], q[j], m[j], n[i], n[j]);
       }
     }
   }
@@ -138,7 +141,8 @@ function turn(a, b, c) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-// Points of the hull with outward normals: at each corner an arc from one edge's normal to the next.
+// Points of the hull with outward normals: at each corner an arc from one edge's normal to the
+// next.
 function rimOf(hull) {
   const rim = [], count = hull.length;
   const edge = (i) => {

@@ -17,7 +17,8 @@ class Spring {
     this.coil.frustumCulled = false;
     this.coil.renderOrder = 6;
     const ball = new THREE.SphereBufferGeometry(0.9 * this.size, 20, 14);
-    const material = new THREE.MeshBasicMaterial({color: colour, depthTest: false, transparent: true});
+    const material = new THREE.MeshBasicMaterial({color: colour, depthTest: false,
+      transparent: true});
     this.held = new THREE.Mesh(ball, material);
     this.hand = new THREE.Mesh(ball, material);
     this.held.renderOrder = this.hand.renderOrder = 6;
@@ -50,7 +51,8 @@ class Spring {
     const p = this.geometry.attributes.position.array, last = kCoils * kCoilSteps;
     for (let i = 0; i <= last; ++i) {
       const part = i / last, angle = 2 * Math.PI * i / kCoilSteps;
-      const ends = Math.min(1, 8 * part, 8 * (1 - part)), wide = Math.min(this.size, 0.2 * long) * ends;
+      const ends = Math.min(1, 8 * part, 8 * (1 - part));
+      const wide = Math.min(this.size, 0.2 * long) * ends;
       for (let k = 0; k < 3; ++k) {
         p[3 * i + k] = from[k] + part * step[k] +
             wide * (Math.cos(angle) * x[k] + Math.sin(angle) * y[k]);
@@ -61,9 +63,8 @@ class Spring {
 
   placeLabel() {
     if (this.label.hidden) return;
-    const {stage} = this.view, at = stage.screenOf(this.hand.position.toArray());
-    const box = stage.canvas.getBoundingClientRect();
-    this.label.style.transform = "translate(" + (at[0] - box.left + 14).toFixed(1) + "px," +
-        (at[1] - box.top - 12).toFixed(1) + "px)";
+    const at = this.view.stage.pixelOf(this.hand.position.toArray());
+    this.label.style.transform = "translate(" + (at[0] + 14).toFixed(1) + "px," +
+        (at[1] - 12).toFixed(1) + "px)";
   }
 }

@@ -1,6 +1,7 @@
 // The picture: renderer, lights, floor and the loop, which draws only when something has changed.
 
 const kKeptTimes = 600;  // frames whose times are kept
+const kCoarse = 0.6;
 
 class Stage {
   constructor(view, box) {
@@ -11,10 +12,12 @@ class Stage {
     box.append(this.canvas);
     this.world = new THREE.Scene();
     this.eye = new Eye(view.shapes.up, view.shapes.sizes.length);
+    this.frames = 0;
     this.scriptTimes = [];
     this.before = new Set();  // called with the time in seconds before each frame
     this.after = [];          // called once after the next frame
-    this.renderer = makeRenderer(this.canvas);
+    this.plain = drawnBySoftware();
+    this.renderer = makeRenderer(this.canvas, this.plain);
     this.rendererName = this.renderer ? nameOfRenderer(this.renderer.getContext()) : null;
     this.addLights();
     this.addFloor();
@@ -31,7 +34,7 @@ class Stage {
     this.sky = new THREE.HemisphereLight(0xffffff, 0x9aa4ae, 0.72);
     this.sky.position.fromArray(up);
     this.sun = new THREE.DirectionalLight(0xfff6ea, 0.72);
-    this.sun.castShadow = true;
+    this.sun.castShadow = !this.plain;
     this.sun.shadow.mapSize.set(1024, 1024);
     this.sun.shadow.radius = 3;
     this.sun.shadow.bias = -0.0012;
@@ -95,13 +98,32 @@ class Stage {
 
   resize() {
     const width = Math.max(1, this.box.clientWidth), height = Math.max(1, this.box.clientHeight);
+    Object.assign(this, {width, height});
     this.eye.aspect = width / height;
     if (this.renderer) {
-      this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
+      this.renderer.setPixelRatio(this.ratio());
       this.renderer.setSize(width, height, false);
     }
     this.triad.resize();
     this.invalidate();
+  }
+
+  // Pixels of the picture to one of the page. Where software draws, a moving picture is coarser, so
+  // that it follows the hand; it becomes fine when it rests.
+  ratio() {
+    const coarse = this.plain && this.before.size > 0 && !this.recording;
+    return coarse ? kCoarse : Math.min(2, window.devicePixelRatio || 1);
+  }
+
+  // Whether the picture has another fineness than it should.
+  isUnlike() {
+    return Boolean(this.renderer) && this.renderer.getPixelRatio() !== this.ratio();
+  }
+
+  sharpen() {
+    if (!this.isUnlike()) return;
+    this.renderer.setPixelRatio(this.ratio());
+    this.dirty = true;
   }
 
   invalidate() {
@@ -120,17 +142,20 @@ class Stage {
     this.asked = false;
     const begin = performance.now();
     for (const work of this.before) work(stamp / 1000);
+    this.sharpen();
     if (this.dirty) this.draw();
     const after = this.after;
     this.after = [];
     for (const work of after) work();
+    this.shownAt = this.shownAt || performance.now();  // ms from the beginning of the page
     if (this.scriptTimes.length === kKeptTimes) this.scriptTimes.shift();
     this.scriptTimes.push(performance.now() - begin);
-    if (this.before.size) this.ask();
+    if (this.before.size || this.isUnlike()) this.ask();
   }
 
   draw() {
     this.dirty = false;
+    ++this.frames;
     this.eye.apply();
     this.fill.position.fromArray(sum(this.eye.back(), this.eye.above(), 0.35));
     if (this.renderer) this.renderer.render(this.world, this.eye.camera);
@@ -138,11 +163,17 @@ class Stage {
     this.view.emit("drawn");
   }
 
-  // Pixels of a point of the world, from the picture's upper left corner of the page.
+  // Pixels of a point of the world within the picture.
+  pixelOf(point) {
+    const v = vectorOf(point).project(this.eye.camera);
+    return [0.5 * (1 + v.x) * this.width, 0.5 * (1 - v.y) * this.height];
+  }
+
+  // Pixels of a point of the world in the window, where a mouse would point at it.
   screenOf(point) {
     this.eye.apply();
-    const v = vectorOf(point).project(this.eye.camera), box = this.canvas.getBoundingClientRect();
-    return [box.left + 0.5 * (1 + v.x) * box.width, box.top + 0.5 * (1 - v.y) * box.height];
+    const at = this.pixelOf(point), box = this.canvas.getBoundingClientRect();
+    return [box.left + at[0], box.top + at[1]];
   }
 
   // A ray of three.js through a mouse position.
@@ -155,16 +186,29 @@ class Stage {
   }
 }
 
+function contextOf(canvas, settings) {
+  return canvas.getContext("webgl2", settings) || canvas.getContext("webgl", settings);
+}
+
+// Without a graphics processor the picture does without shadows and smooth edges, so that it
+// follows the hand; an address that ends in #fine has them all the same.
+function drawnBySoftware() {
+  if (location.hash === "#fine") return false;
+  const context = contextOf(document.createElement("canvas"), {});
+  if (!context) return false;
+  const name = nameOfRenderer(context), loss = context.getExtension("WEBGL_lose_context");
+  if (loss) loss.loseContext();
+  return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
+}
+
 // Null where the browser has no WebGL.
-function makeRenderer(canvas) {
-  const settings = {antialias: true, alpha: false, powerPreference: "default"};
-  let context = null;
-  for (const name of ["webgl2", "webgl"]) context = context || canvas.getContext(name, settings);
+function makeRenderer(canvas, plain) {
+  const context = contextOf(canvas, {antialias: !plain, alpha: false});
   if (!context) return null;
-  const renderer = new THREE.WebGLRenderer({canvas: canvas, context: context, antialias: true});
+  const renderer = new THREE.WebGLRenderer({canvas: canvas, context: context});
   renderer.gammaOutput = true;
   renderer.gammaFactor = 2.2;
-  renderer.shadowMap.enabled = true;
+  renderer.shadowMap.enabled = !plain;
   renderer.shadowMap.type = THREE.PCFSoftShadowMap;
   return renderer;
 }

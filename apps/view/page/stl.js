@@ -71,7 +71,10 @@ function smoothNormals(positions, count) {
     let x = fx, y = fy, z = fz;
     for (let other = next[c]; other !== c; other = next[other]) {
       const g = (other / 3) | 0, gx = faces[3 * g], gy = faces[3 * g + 1], gz = faces[3 * g + 2];
-      if (fx * gx + fy * gy + fz * gz > kCrease * sizes[f] * sizes[g]) { x += gx; y += gy; z += gz; }
+      if (fx * gx + fy * gy + fz * gz <= kCrease * sizes[f] * sizes[g]) continue;
+      x += gx;
+      y += gy;
+      z += gz;
     }
     const size = Math.sqrt(x * x + y * y + z * z);
     normals[3 * c] = size > 0 ? x / size : 0;

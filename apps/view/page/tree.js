@@ -1,5 +1,5 @@
-// Names of everything in a tree. What is under the pointer here is lit in the picture, and the other
-// way round.
+// Names of everything in a tree. What is under the pointer here is lit in the picture, and
+// the other way round.
 
 class Tree {
   constructor(view, box) {

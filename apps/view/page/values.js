@@ -44,12 +44,12 @@ class Values {
   // A row whose number is read again at each filling.
   row(body, name, unitName, read, word) {
     const out = make("td", {class: "vv-number"});
-    const certainty = word ? make("td", {class: "vv-word"}) : null;
+    const certainty = make("td", {class: "vv-word"});
     body.append(make("tr", {}, make("th", {text: name, scope: "row"}), out,
         make("td", {class: "vv-unit", text: unitName}), certainty));
     this.rows.push(() => {
       setText(out, shown(read()));
-      if (certainty) setText(certainty, word());
+      if (word) setText(certainty, word());
     });
   }
 
@@ -86,8 +86,9 @@ class Values {
     const body = this.table();
     joint.freedoms.forEach((freedom, k) => {
       const {name, factor} = freedomUnit(scene, freedom);
-      this.row(body, freedom.name || "coordinate", name, () => factor * now.coordinates[joint.at + k]);
-      this.row(body, "rate", name + "/s", () => factor * now.rates[joint.at + k]);
+      const at = joint.at + k;
+      this.row(body, freedom.name || "coordinate", name, () => factor * now.coordinates[at]);
+      this.row(body, "rate", name + "/s", () => factor * now.rates[at]);
     });
     kWrenchNames.forEach((name, k) => this.row(body, name, k < 3 ? "N" : "N m",
         () => (now.wrenches ? now.wrenches[6 * index + k] : NaN),

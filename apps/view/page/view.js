@@ -36,7 +36,7 @@ class View {
     const {scene} = this;
     this.boxes = boxes;
     this.stage = new Stage(this, boxes.stage);
-    this.nodes = new MechanismNodes(scene, this.shapes);
+    this.nodes = new MechanismNodes(scene, this.shapes, this.stage.plain);
     this.marks = new Marks(scene, this.nodes, this.shapes);
     this.forces = new Forces(this);
     this.paths = new Paths(this);
@@ -83,8 +83,8 @@ class View {
   }
 
   fit() {
-    const covered = Math.min(0.3, kToolsHeight / this.stage.canvas.clientHeight);
-    this.stage.eye.fit(this.swept, 0.05 * this.shapes.sizes.length, covered);
+    const covered = Math.min(0.3, kToolsHeight / this.stage.height);
+    this.stage.eye.fit(this.swept, 0.1 * this.shapes.sizes.length, covered);
     this.looked();
   }
 
@@ -162,7 +162,8 @@ class View {
     setText(boxes.name, list[hovered.index].name);
     const left = event.clientX - box.left;
     boxes.name.style.transform = "translate(" + (left + 14) + "px," +
-        (event.clientY - box.top + 14) + "px)" + (left > 0.6 * box.width ? " translateX(-105%)" : "");
+        (event.clientY - box.top + 14) + "px)" +
+        (left > 0.6 * box.width ? " translateX(-105%)" : "");
   }
 
   // What is under the mouse: {kind, index, link, point in the world} or null.
