@@ -23,8 +23,9 @@ struct CheckArguments {
   std::vector<std::filesystem::path> mechanisms;  ///< one or several
   std::optional<double> tolerance;                ///< instead of the mechanism's own
   bool json = false;
-  bool dh = false;      ///< the Denavit-Hartenberg rows as well
-  bool strict = false;  ///< warnings are errors
+  bool dh = false;             ///< the Denavit-Hartenberg rows as well
+  bool strict = false;         ///< warnings are errors
+  std::filesystem::path draw;  ///< where a picture of the only mechanism goes; empty: nowhere
 };
 /// Checks every file; returns the greatest of their exit codes.
 int RunCheck(const CheckArguments& arguments);

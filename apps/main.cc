@@ -249,6 +249,8 @@ void AddCheck(CLI::App* app, vmech::CheckArguments* check) {
       ->type_name("FILE");
   AddTolerance(command, &check->tolerance);
   command->add_flag("--dh", check->dh, "print the Denavit-Hartenberg rows as well");
+  command->add_option("--draw", check->draw, "write a picture of the mechanism: FILE.svg")
+      ->type_name("FILE");
   command->add_flag("--strict", check->strict, kStrictHelp);
   command->add_flag("--json", check->json, "print JSON instead of text");
 }

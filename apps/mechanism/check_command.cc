@@ -4,8 +4,13 @@
 #include <nlohmann/json.hpp>
 
 #include "vmech/apps/commands.h"
+#include "vmech/apps/console/option_error.h"
+#include "vmech/apps/drawing/mechanism_drawing.h"
 #include "vmech/apps/files/file_kind.h"
+#include "vmech/apps/files/inputs_apart.h"
+#include "vmech/apps/files/output_folder.h"
 #include "vmech/apps/mechanism/check.h"
+#include "vmech/mechanisms/files/document.h"
 #include "vmech/mechanisms/files/reader.h"
 
 namespace vmech {
@@ -24,10 +29,27 @@ ExitCode CodeOf(const MechanismCheck& check, bool strict) {
   return strict && !check.doubts.empty() ? kBadInput : kSuccess;
 }
 
+/// A picture of a mechanism as text, by the ending of the file that it is for.
+std::string PictureOf(const MechanismCheck& check, const std::filesystem::path& file) {
+  if (file.extension() == ".svg") return DrawMechanism(check.tree);
+  throw OptionError(fmt::format("--draw: the ending of {} does not say what to draw: .svg",
+                                Quoted(file.string())));
+}
+
+void WritePicture(const MechanismCheck& check, const CheckArguments& arguments) {
+  const std::filesystem::path& file = arguments.draw;
+  const std::string picture = PictureOf(check, file);
+  RequireOutputsApart(arguments.mechanisms, {file});
+  OutputFolder folder(file.has_parent_path() ? file.parent_path() : ".");
+  folder.Write(file.filename().string(), picture);
+  folder.Commit();
+}
+
 Checked CheckFile(const std::filesystem::path& path, const CheckArguments& arguments) {
   Mechanism mechanism = ReadAs({"check", {FileKind::kMechanism}}, path, ReadMechanism);
   if (arguments.tolerance) mechanism.tolerance = *arguments.tolerance;
   const MechanismCheck check = CheckMechanism(mechanism);
+  if (!arguments.draw.empty()) WritePicture(check, arguments);
   return {arguments.json ? JsonReport(check, arguments.dh) : TextReport(check, arguments.dh),
           CodeOf(check, arguments.strict)};
 }
@@ -68,6 +90,10 @@ void PrintJsons(const std::vector<std::filesystem::path>& paths,
 }  // namespace
 
 int RunCheck(const CheckArguments& arguments) {
+  if (!arguments.draw.empty() && arguments.mechanisms.size() > 1) {
+    throw OptionError(fmt::format("--draw: one mechanism is drawn at a time, and {} are given",
+                                  arguments.mechanisms.size()));
+  }
   if (arguments.mechanisms.size() == 1) {
     const Checked checked = CheckFile(arguments.mechanisms[0], arguments);
     fmt::print("{}", checked.report);

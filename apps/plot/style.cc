@@ -43,10 +43,10 @@ std::string_view PlotStyleSheet() {
   return kStyle;
 }
 
-std::string StandaloneSvg(const html::Markup& drawing) {
+std::string StandaloneSvg(const html::Markup& drawing, std::string_view style_sheet) {
   std::string svg = drawing.html();
   const std::size_t after_tag = svg.find('>') + 1;
-  return svg.insert(after_tag, "<style>" + std::string(PlotStyleSheet()) + "</style>");
+  return svg.insert(after_tag, "<style>" + std::string(style_sheet) + "</style>");
 }
 
 }  // namespace vmech::plot

@@ -16,6 +16,7 @@ inline constexpr int kPaletteSize = 7;
 std::string_view PlotStyleSheet();
 
 /// A plot as a file of its own: the drawing with its style sheet inside.
-std::string StandaloneSvg(const html::Markup& drawing);
+std::string StandaloneSvg(const html::Markup& drawing,
+                          std::string_view style_sheet = PlotStyleSheet());
 
 }  // namespace vmech::plot

@@ -128,7 +128,7 @@ class LivePanel {
     else this.drop("at a limit");
     if (state.haptic) this.showHaptic(state.haptic);
     for (const slider of this.sliders || []) this.fillSlider(slider, state);
-    if (state.stopped) this.view.say("The session has stopped.");
+    if (state.stopped) this.view.say("It goes no further: a limit, or the end of what its loops allow.");
   }
 
   showHaptic(haptic) {

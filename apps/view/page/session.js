@@ -11,6 +11,7 @@ class Session {
         settings.socket + location.search;
     this.state = "connecting";  // then "writer", "watching" or "gone"
     this.last = null;           // the newest state of the server
+    this.taken = false;         // the guest has done something; until then a motion is shown
     this.echo = 0;              // the newest event that has come back
     this.latencies = [];        // ms from a drag to the frame that shows its effect
     this.received = 0;
@@ -44,6 +45,7 @@ class Session {
 
   send(message) {
     if (this.socket.readyState !== WebSocket.OPEN) return;
+    if (!["next", "write", "modes", "save"].includes(message.do)) this.taken = true;
     this.socket.send(JSON.stringify(message));
   }
 
@@ -55,7 +57,9 @@ class Session {
     if (message.note) this.view.say(message.note);
     if (message.refused) this.view.say(message.refused, true);
     if (message.modes) this.view.emit("modes", message);
-    if (message.save) download(message.name, new Blob([message.text], {type: "text/plain"}));
+    for (const {name, text} of message.files || []) {
+      download(name, new Blob([text], {type: "text/plain"}));
+    }
   }
 
   // Another session under the same address shows another mechanism: the page is read anew.
@@ -73,6 +77,12 @@ class Session {
     const {now, stage, history} = this.view;
     this.last = state;
     ++this.received;
+    stage.after.push(() => this.drawn(state));
+    this.view.emit("state", state);
+    if (this.view.scene.motion && !this.taken) {
+      stage.ask();
+      return;
+    }
     now.live = true;
     now.time = state.time;
     state.poses.forEach((pose, link) => now.poses.set(pose, 7 * link));
@@ -83,9 +93,7 @@ class Session {
     now.hand = state.hand || null;
     now.haptic = state.haptic || null;
     history.add(now);
-    stage.after.push(() => this.drawn(state));
     this.view.moved();
-    this.view.emit("state", state);
   }
 
   showWrenches(now, state) {
