@@ -19,6 +19,7 @@ namespace vmech {
 namespace {
 
 constexpr double kStretch = 5e-4;        // of the characteristic length, under the whole weight
+constexpr double kSlip = 0.05;       // of the characteristic length: the longest stretch
 constexpr double kFrequency = 100;       // of the whole mass on the spring, at least [rad/s]
 constexpr double kMouseLag = 15e-3;      // with which the hand follows the mouse [s]
 constexpr double kPathPeriod = 5e-3;     // between rows of the recorded path [s]
@@ -129,6 +130,7 @@ HandCoupling ScreenMechanism::MouseSpring() const {
                 : kWithoutMass;
   HandCoupling spring;
   spring.stiffness.head<3>().setConstant(K);
+  spring.max_force = kSlip * K * tree_->length;
   spring.damping.head<3>().setConstant(mass_ > 0 ? 2 * std::sqrt(K * mass_) : kMouseLag * K);
   return spring;
 }
@@ -176,7 +178,11 @@ void ScreenMechanism::Drag(const Vector3d& p_W) {
 }
 
 void ScreenMechanism::Release(bool keep) {
-  if (!hand_ || keep) return;
+  if (!hand_) return;
+  if (keep) {
+    hand_->target = hand_->at = dynamics_->X_WG().p;
+    return;
+  }
   dynamics_->LetGo();
   hand_.reset();
   mode_ = ScreenMode::kSwinging;

@@ -50,7 +50,8 @@ struct DraggedPath {
 /// A mechanism that a mouse takes by any point of a link. What moves it is CoupledDynamics, the
 /// real-time path, with a point grasp on the picked point and the mouse as a hand without mass: a
 /// spring so stiff that the weight of all links stretches it by no more than half a thousandth of
-/// the characteristic length, and critically damped against their mass. Everything is in SI units,
+/// the characteristic length, critically damped against their mass, that slips beyond a hundred
+/// times that. Everything is in SI units,
 /// world axes. Not for several threads at once.
 class ScreenMechanism {
  public:
@@ -73,7 +74,8 @@ class ScreenMechanism {
   void Grab(int link, const Vector3d& p_L);
   /// Moves the hand to a point in the world. Without effect where nothing is held.
   void Drag(const Vector3d& p_W);
-  /// Opens the hand: `keep` leaves the spring where it is, else the mechanism swings.
+  /// The hand stops pulling. `keep`: it holds the point where that has come to, so that the spring
+  /// carries what the mechanism puts on it and no more; else it opens, and the mechanism swings.
   void Release(bool keep);
   void Swing();
   void Freeze();

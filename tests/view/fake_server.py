@@ -100,7 +100,8 @@ class FakeServer:
                                "poses": self.mechanism.poses(t)} for t in (0.6, 2.0)],
                     "note": "Two of them."}
         elif kind == "save":
-            return {"save": message["what"], "name": "posed.yaml", "text": "name: four-bar\n"}
+            return {"save": message["what"],
+                    "files": [{"name": "posed.yaml", "text": "name: four-bar\n"}]}
         elif kind == "next":
             return {"state": self._state()}
         return None

@@ -33,13 +33,17 @@ function tick(text, on, change, title) {
 }
 
 // Offers a file for download.
+// A link that saves a blob when it is clicked.
+function savingLink(name, blob) {
+  return make("a", {href: URL.createObjectURL(blob), download: name, text: name});
+}
+
 function download(name, blob) {
-  const address = URL.createObjectURL(blob);
-  const link = make("a", {href: address, download: name});
+  const link = savingLink(name, blob);
   document.body.append(link);
   link.click();
   link.remove();
-  setTimeout(() => URL.revokeObjectURL(address), 10000);
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
 
 // A file name without what a file system would mind.

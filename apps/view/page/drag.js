@@ -1,5 +1,7 @@
-// The mouse takes hold of a link: the hit point follows the mouse in the plane through the hit that
-// faces the camera. The hold ends whenever the pointer is lost in any way.
+// The mouse takes hold of a link: the hit point follows the mouse in the plane through the hit in
+// which the mechanism moves, or else that faces the camera. The hold ends whenever the pointer is lost in any way.
+
+const kLeastTilt = 0.25;  // of the plane against the line of sight, its sine
 
 class Drag {
   constructor(view) {
@@ -33,7 +35,10 @@ class Drag {
     if (!point.every(Number.isFinite)) return false;
     try { view.stage.canvas.setPointerCapture(event.pointerId); } catch (error) { return false; }
     this.pointer = event.pointerId;
-    this.plane.setFromNormalAndCoplanarPoint(vectorOf(view.stage.eye.back()), vectorOf(hit.point));
+    const back = view.stage.eye.back(), {normal} = view;
+    const inPlane = normal && Math.abs(dot(normal, back)) > kLeastTilt;
+    this.plane.setFromNormalAndCoplanarPoint(vectorOf(inPlane ? normal : back),
+        vectorOf(hit.point));
     this.to = hit.point.slice();
     this.aimed = event.timeStamp;
     this.active = true;

@@ -21,7 +21,20 @@ function contactsOf(scene, link) {
   for (const grasp of scene.grasps) {
     if (grasp.link === link) contacts.push({type: "grasp", point: grasp.pose.slice(0, 3)});
   }
+  contacts.push(...ends(scene.links[link], contacts));
   return contacts;
+}
+
+// Where else a link reaches: anchors at which there is no joint, and the centre of gravity of one
+// that would otherwise be a point.
+function ends(link, contacts) {
+  const far = (point) => contacts.every((contact) =>
+      lengthOf(sum(contact.point, point, -1)) > 1e-9);
+  const points = link.anchors.map((anchor) => anchor.pose.slice(0, 3)).filter(far);
+  if (contacts.length === 1 && !points.length && link.mass > 0 && far(link.centre)) {
+    points.push(link.centre);
+  }
+  return points.map((point) => ({type: "grasp", point: point}));
 }
 
 // The common axis of a link's pins, or null if they are not parallel or stand one above the other.

@@ -17,6 +17,7 @@ class LivePanel {
     view.on("writer", () => this.showStatus());
     view.on("state", (state) => this.showState(state));
     view.on("modes", (message) => this.showModes(message));
+    view.on("files", (files) => this.offer(files));
     this.showStatus();
   }
 
@@ -35,7 +36,18 @@ class LivePanel {
         this.buildSliders(), this.buildModes(),
         make("div", {class: "vv-row"},
             button("Save the pose", {do: "save", what: "mechanism"}, "As a mechanism file"),
-            button("Save the drag", {do: "save", what: "motion"}, "As a motion table")));
+            button("Save the drag", {do: "save", what: "motion"},
+                "As a study of vmech loads, with its mechanism and table")),
+        this.files = make("p", {class: "vv-hint"}));
+  }
+
+  // One file is saved at once; of several, which a browser would ask about, each by its link.
+  offer(files) {
+    const blob = (file) => new Blob([file.text], {type: "text/plain"});
+    for (const link of this.files.children) URL.revokeObjectURL(link.href);
+    this.files.replaceChildren();
+    if (files.length === 1) download(files[0].name, blob(files[0]));
+    else files.forEach((file) => this.files.append(savingLink(file.name, blob(file)), " "));
   }
 
   buildSliders() {

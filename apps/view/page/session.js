@@ -57,9 +57,7 @@ class Session {
     if (message.note) this.view.say(message.note);
     if (message.refused) this.view.say(message.refused, true);
     if (message.modes) this.view.emit("modes", message);
-    for (const {name, text} of message.files || []) {
-      download(name, new Blob([text], {type: "text/plain"}));
-    }
+    if (message.files) this.view.emit("files", message.files);
   }
 
   // Another session under the same address shows another mechanism: the page is read anew.

@@ -10,7 +10,7 @@ class View {
     this.now = makeNow(scene);
     this.picked = null;
     this.hovered = null;
-    this.keeps = false;
+    this.keeps = true;
     this.shown = {forces: true, moments: false, loads: true, weights: false, paths: true,
       frames: false, centres: false, grasps: scene.grasps.length > 0, cuts: false, limits: false,
       grid: true};
@@ -60,21 +60,31 @@ class View {
     for (const grasp of scene.grasps) {
       this.paths.add(grasp.link, grasp.pose.slice(0, 3), grasp.name);
     }
+    this.normal = this.findNormal();
     this.lookWell();
     this.moved();
   }
 
+  // The common axis of the pins of a mechanism that moves in a plane, in the world; else null.
+  findNormal() {
+    const inWorld = (joint) => rotate(this.now.poses, 7 * joint.first.link,
+        axisOf(anchorOf(this.scene, joint, "first").pose, 2), [0, 0, 0]);
+    const of = (type) => this.scene.joints.filter((joint) => joint.type === type).map(inWorld);
+    const pins = of("revolute"), slides = of("prismatic");
+    const planar = pins.length > 0 && pins.length + slides.length === this.scene.joints.length &&
+        pins.every((axis) => isParallel(axis, pins[0])) &&
+        slides.every((axis) => Math.abs(dot(axis, pins[0])) < 1e-6);
+    return planar ? pins[0] : null;
+  }
+
   // A mechanism in one plane is seen almost along its pins, another from a corner.
   lookWell() {
-    const {eye} = this.stage, axes = this.scene.joints.filter(
-        (joint) => joint.type === "revolute").map((joint) => rotate(this.now.poses,
-        7 * joint.first.link, axisOf(anchorOf(this.scene, joint, "first").pose, 2), [0, 0, 0]));
-    const flat = axes.length > 1 && axes.every((axis) => isParallel(axis, axes[0]));
-    if (flat && Math.abs(dot(axes[0], eye.up)) < 0.5) {
-      const front = axes[0].some((v) => v > 0.7) ? axes[0] : axes[0].map((v) => -v);
+    const {eye} = this.stage, {normal} = this;
+    if (normal && Math.abs(dot(normal, eye.up)) < 0.5) {
+      const front = normal.some((v) => v > 0.7) ? normal : normal.map((v) => -v);
       const side = cross(eye.up, front);
       eye.lookFrom(sum(sum(front, side, 0.42), eye.up, 0.3));
-    } else if (flat) {
+    } else if (normal) {
       eye.lookFrom(sum(sum(eye.up.map((v) => 1.5 * v), eye.north, -1), eye.east, 0.35));
     } else {
       eye.lookFrom(sum(sum(eye.up.map((v) => 0.55 * v), eye.north, -1), eye.east, 0.62));

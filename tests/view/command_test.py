@@ -1,0 +1,297 @@
+"""vmech's own pages in a browser. Usage: command_test.py VMECH CHROMIUM CHROMEDRIVER FOLDER"""
+
+import math
+import pathlib
+import re
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import time
+import unittest
+import urllib.error
+import urllib.request
+import xml.etree.ElementTree
+
+from selenium.webdriver.common.by import By
+from selenium.webdriver.support.ui import WebDriverWait
+
+from browser import errors_of, open_browser, resize
+from mouse import Mouse
+
+EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "mechanisms" / "examples"
+GRAVITY = 9.81
+MILLIMETRE = 1e-3
+
+LIMITED = """
+vmech: "1.0"
+name: limited
+units: {length: m, angle: rad}
+gravity: [0, -9.81, 0]
+ground: frame
+links:
+  frame: {anchors: {a: {origin: [0, 0, 0], z: [0, 0, 1], x: [1, 0, 0]}}}
+  '<img src=x onerror=window.ran=1>':
+    mass: 1
+    center_of_gravity: [0.5, 0, 0]
+    anchors: {a: {origin: [0, 0, 0], z: [0, 0, 1], x: [1, 0, 0]},
+              b: {origin: [1, 0, 0], z: [0, 0, 1], x: [1, 0, 0]}}
+joints:
+  hinge:
+    {type: revolute, connects: [frame/a, '<img src=x onerror=window.ran=1>/a'], start: 0,
+     limits: [-0.5, 0.5]}
+"""
+
+
+class View:
+    """A running `vmech view`."""
+
+    def __init__(self, path):
+        self.process = subprocess.Popen([VMECH, "view", str(path)], stdout=subprocess.PIPE,
+                                        stderr=subprocess.STDOUT, text=True)
+        self.said = ""
+        for line in self.process.stdout:
+            self.said += line
+            found = re.search(r"http://127\.0\.0\.1:(\d+)/\?token=(\w+)", line)
+            if found:
+                self.url, self.port, self.token = found[0], int(found[1]), found[2]
+                return
+        raise AssertionError(f"vmech view {path} says no address: {self.said}")
+
+    def stop(self, how=signal.SIGINT):
+        self.process.send_signal(how)
+        self.process.communicate(timeout=10)
+        return self.process.returncode
+
+
+class CommandTest(unittest.TestCase):
+    def setUp(self):
+        resize(BROWSER, 1200)
+        self.view = None
+
+    def tearDown(self):
+        BROWSER.get("about:blank")
+        if self.view:
+            self.view.stop(signal.SIGKILL)
+        errors_of(BROWSER)
+
+    def do(self, script, *arguments):
+        return BROWSER.execute_script(script, *arguments)
+
+    def wait(self, script, *arguments, seconds=15):
+        return WebDriverWait(BROWSER, seconds, 0.05).until(
+            lambda browser: browser.execute_script(script, *arguments))
+
+    def open(self, path):
+        self.view = View(path)
+        BROWSER.get(self.view.url)
+        self.wait("return Boolean(window.vmechView) && vmechView.session.received > 0")
+        self.mouse = Mouse(BROWSER)
+
+    def state(self):
+        return self.do("return vmechView.session.last")
+
+    def screen(self, link, point):
+        return self.do("return vmechView.screenOf(vmechView.pointOf(arguments[0], arguments[1]))",
+                       link, point)
+
+    def settle(self):
+        """Until the newest states no longer differ by a tenth of a micrometre."""
+        before = None
+        for _ in range(100):
+            time.sleep(0.1)
+            now = self.state()["poses"]
+            if before and all(abs(a - b) < 1e-7 for p, q in zip(before, now)
+                              for a, b in zip(p, q)):
+                return self.state()
+            before = now
+        raise AssertionError("the mechanism does not come to rest")
+
+
+class Hand(CommandTest):
+    def pull(self, path, link, grip, goal):
+        """Takes a link at a point of it, brings the mouse to where `goal` of the world is, and
+        keeps it there."""
+        self.open(path)
+        x, y = self.screen(link, grip)
+        self.mouse.pull((x, y), self.do("return vmechView.screenOf(arguments[0])", goal))
+        self.wait("return vmechView.session.last.mode === 'held'")
+        return self.settle()
+
+    def test_drags_the_crank_of_a_four_bar_to_where_its_circle_allows(self):
+        state = self.pull(EXAMPLES / "four-bar.yaml", 1, [0.4, 0, 0], [-0.05, 0.42, 0])
+        target, point = state["hand"]["target"], state["hand"]["point"]
+        self.assertGreater(state["coordinates"][0], 1.2)  # from 0.52 rad
+        angle = math.atan2(target[1], target[0])
+        reach = math.hypot(*point[:2])
+        allowed = [reach * math.cos(angle), reach * math.sin(angle)]
+        self.assertLess(math.dist(point[:2], allowed), MILLIMETRE)
+        self.assertLess(state["closure"], 1e-12)
+
+    def test_the_force_that_is_shown_holds_the_weight(self):
+        """A rod on a hinge: the moments of hand and weight about it are in balance."""
+        self.pull(EXAMPLES / "crank.yaml", 1, [0.25, 0, 0], [0.24, 0.05, 0])
+        self.mouse.steps("up")
+        state = self.settle()
+        force, point = state["hand"]["force"], state["hand"]["point"]
+        angle = state["coordinates"][0]
+        moment = point[0] * force[1] - point[1] * force[0]
+        self.assertAlmostEqual(moment, 0.8 * GRAVITY * 0.15 * math.cos(angle), delta=1e-4)
+        shown = BROWSER.find_element(By.CSS_SELECTOR, ".vv-force").text
+        self.assertAlmostEqual(float(shown.split()[0]), math.hypot(*force), delta=2e-3)
+        # The hinge carries what the hand does not: first link on second, axes of the frame.
+        hinge = state["wrenches"][0]
+        self.assertAlmostEqual(hinge[0] + force[0], 0, delta=1e-4)
+        self.assertAlmostEqual(hinge[1] + force[1], 0.8 * GRAVITY, delta=1e-4)
+        self.assertEqual(state["certainty"][0], ["certain"] * 6)
+
+    def test_a_limit_stops_it_and_a_hostile_name_runs_nothing(self):
+        path = FOLDER / "limited.yaml"
+        path.write_text(LIMITED, encoding="utf-8")
+        state = self.pull(path, 1, [0.4, 0, 0], [0.32, 0.24, 0])
+        self.assertAlmostEqual(state["coordinates"][0], 0.5, delta=1e-4)
+        self.assertEqual(state["at_limit"], [0])
+        self.assertIsNone(self.do("return window.ran"))
+        self.assertIn('<img src=x onerror=window.ran=1>',
+                      BROWSER.find_element(By.TAG_NAME, "body").text)
+
+    def test_sliders_modes_and_the_start(self):
+        self.open(EXAMPLES / "four-bar.yaml")
+        self.do("vmechView.session.send({do: 'slide', joint: 0, freedom: 0, value: 2})")
+        self.wait("return Math.abs(vmechView.session.last.coordinates[0] - 2) < 1e-9")
+        self.assertLess(self.state()["closure"], 1e-12)
+        self.do("vmechView.session.view.on('modes', (m) => { window.modes = m.modes; });"
+                "vmechView.session.send({do: 'modes'})")
+        modes = self.wait("return window.modes")
+        self.assertEqual(len(modes), 2)
+        # Elbow up and elbow down: the coupler's end in each, from the two circles.
+        pin = [0.5 * math.cos(2), 0.5 * math.sin(2)]
+        ends = set()
+        for mode in modes:
+            x, y, _, w, _, _, z = mode["poses"][2]
+            turn = 2 * math.atan2(z, w)
+            end = [x + 1.2 * math.cos(turn), y + 1.2 * math.sin(turn)]
+            self.assertLess(math.dist([x, y], pin), 1e-9)
+            self.assertAlmostEqual(math.dist(end, [1.1, 0]), 0.75, delta=1e-9)
+            ends.add(end[1] > 0)
+        self.assertEqual(ends, {True, False})
+        self.do("vmechView.session.send({do: 'reset'})")
+        self.wait("return Math.abs(vmechView.session.last.coordinates[0] - Math.PI / 6) < 1e-9")
+
+    def test_a_drag_is_saved_as_a_study_that_runs(self):
+        self.pull(EXAMPLES / "four-bar.yaml", 1, [0.4, 0, 0], [0.2, 0.4, 0])
+        self.mouse.steps("up")
+        BROWSER.find_element(By.XPATH, "//button[text()='Save the drag']").click()
+        for end in (".yaml", ".csv", "-study.yaml"):
+            name = f"four-bar-drag{end}"
+            WebDriverWait(BROWSER, 5).until(
+                lambda browser, name=name: browser.find_element(By.LINK_TEXT, name)).click()
+            deadline = time.monotonic() + 10
+            while not (FOLDER / name).exists():
+                self.assertLess(time.monotonic(), deadline, f"{name} is not saved")
+                time.sleep(0.1)
+        run = subprocess.run(
+            [VMECH, "loads", FOLDER / "four-bar-drag-study.yaml", "--out", FOLDER / "drag", "-q"],
+            capture_output=True, text=True, check=False)
+        self.assertEqual(run.returncode, 0, run.stderr)
+
+
+class Doors(CommandTest):
+    def status(self, url, **headers):
+        request = urllib.request.Request(url, headers=headers)
+        try:
+            return urllib.request.urlopen(request, timeout=10).status
+        except urllib.error.HTTPError as error:
+            return error.code
+
+    def socket_status(self, query, **headers):
+        """The first line of the answer to a WebSocket's request."""
+        lines = {"Host": f"127.0.0.1:{self.view.port}", "Upgrade": "websocket",
+                 "Connection": "Upgrade", "Sec-WebSocket-Key": "dGhlIHNhbXBsZSBub25jZQ==",
+                 "Sec-WebSocket-Version": "13", **headers}
+        request = f"GET /socket?{query} HTTP/1.1\r\n" + "".join(
+            f"{name}: {value}\r\n" for name, value in lines.items()) + "\r\n"
+        with socket.create_connection(("127.0.0.1", self.view.port), timeout=10) as client:
+            client.sendall(request.encode())
+            return client.recv(64).decode(errors="replace").split("\r\n")[0]
+
+    def test_only_the_own_page_comes_in(self):
+        self.open(EXAMPLES / "four-bar.yaml")
+        view, own = self.view, f"http://127.0.0.1:{self.view.port}"
+        self.assertEqual(self.status(view.url), 200)
+        self.assertEqual(self.status(view.url[:-1] + "x"), 403)
+        self.assertEqual(self.status(own + "/"), 403)
+        self.assertEqual(self.status(view.url, Origin="http://elsewhere.example"), 403)
+        self.assertEqual(self.status(view.url, Host="elsewhere.example"), 403)
+        token = f"token={view.token}"
+        self.assertIn("101", self.socket_status(token, Origin=own))
+        for query, headers in (("token=0", {"Origin": own}), (token, {}),
+                               (token, {"Origin": "http://elsewhere.example"}),
+                               (token, {"Origin": own, "Host": "elsewhere.example"})):
+            self.assertNotIn("101", self.socket_status(query, **headers))
+
+    def test_a_second_page_watches_until_the_first_is_closed(self):
+        self.open(EXAMPLES / "four-bar.yaml")
+        first = BROWSER.current_window_handle
+        BROWSER.switch_to.new_window("tab")
+        BROWSER.get(self.view.url)
+        self.wait("return window.vmechView && vmechView.session.state === 'watching'")
+        self.do("vmechView.session.send({do: 'slide', joint: 0, freedom: 0, value: 1})")
+        time.sleep(0.3)
+        self.assertAlmostEqual(self.state()["coordinates"][0], math.pi / 6, delta=1e-9)
+        second = BROWSER.current_window_handle
+        BROWSER.switch_to.window(first)
+        BROWSER.close()
+        BROWSER.switch_to.window(second)
+        self.do("vmechView.session.send({do: 'write'})")
+        self.wait("return vmechView.session.state === 'writer'")
+
+    def test_closing_the_page_lets_go_and_a_lost_server_is_told(self):
+        self.open(EXAMPLES / "four-bar.yaml")
+        self.do("vmechView.session.send({do: 'swing'})")
+        self.wait("return vmechView.session.last.mode === 'swinging'")
+        BROWSER.get("about:blank")
+        BROWSER.get(self.view.url)
+        self.wait("return window.vmechView && vmechView.session.received > 0")
+        self.assertEqual(self.state()["mode"], "frozen")
+        self.assertEqual(self.view.stop(), 0)
+        self.wait("return vmechView.session.state === 'gone'")
+        self.assertIn("server is gone", BROWSER.find_element(By.CSS_SELECTOR, ".vv-banner").text)
+        self.view = None
+
+
+class Documents(CommandTest):
+    def test_the_report_plays_its_motion_from_the_disk(self):
+        out = FOLDER / "slider-crank"
+        shutil.rmtree(out, ignore_errors=True)
+        subprocess.run([VMECH, "loads", EXAMPLES / "slider-crank-study.yaml", "--out", out, "-q"],
+                       check=True)
+        report = out / "report.html"
+        xml.etree.ElementTree.fromstring(report.read_text(encoding="utf-8").split("\n", 1)[1])
+        BROWSER.get(report.as_uri())
+        self.wait("return Boolean(window.vmechView)")
+        self.assertEqual(errors_of(BROWSER), [])
+        self.assertTrue(self.do("return vmechView.renderer"))
+        self.do("vmechView.goTo(90)")
+        # The pin of the crank goes around the main bearing at 100 mm, the slider on its line.
+        turn = math.radians(40 + 2 * 360 * 90 / 719)
+        crank = self.do("return vmechView.pointOf(1, [0.1, 0, 0])")
+        angle = math.atan2(crank[1], crank[0])
+        self.assertLess(abs(math.remainder(angle - turn, 2 * math.pi)), 0.02)
+        self.view = View(out)
+        BROWSER.get(self.view.url)
+        self.wait("return Boolean(window.vmechView)")
+        self.assertEqual(errors_of(BROWSER), [])
+
+
+if __name__ == "__main__":
+    VMECH = sys.argv.pop(1)
+    FOLDER = pathlib.Path(sys.argv.pop(3)).resolve()
+    shutil.rmtree(FOLDER, ignore_errors=True)
+    FOLDER.mkdir(parents=True)
+    BROWSER = open_browser(sys.argv.pop(1), sys.argv.pop(1), FOLDER)
+    try:
+        unittest.main(verbosity=2)
+    finally:
+        BROWSER.quit()
