@@ -75,6 +75,7 @@ struct HapticArguments {
   double stiffness = 0;              ///< paper: of the constraint [N/m]; 0: what the device allows
   double inertia = 0;                ///< paper: share that is felt; 0: what the device allows
   bool gripper = false;              ///< hold while the gripper is closed
+  bool view = false;                 ///< shown on a page
   std::filesystem::path record;      ///< empty: no recording
   bool free_running = false;         ///< as fast as it computes
   std::optional<double> tolerance;   ///< instead of the mechanism's own

@@ -193,6 +193,8 @@ void AddHaptic(CLI::App* app, vmech::HapticArguments* haptic) {
   command->add_flag("--gripper", haptic->gripper,
                     "hold while the device's gripper is closed, the link that is nearest then; the "
                     "simulated operator lets go for a second now and then");
+  command->add_flag("--view", haptic->view,
+                    "show the session in the browser, at an address that is printed");
   command->add_option("--record", haptic->record, "write every tick to this file")
       ->type_name("FILE");
   AddTolerance(command, &haptic->tolerance);
@@ -249,7 +251,10 @@ void AddCheck(CLI::App* app, vmech::CheckArguments* check) {
       ->type_name("FILE");
   AddTolerance(command, &check->tolerance);
   command->add_flag("--dh", check->dh, "print the Denavit-Hartenberg rows as well");
-  command->add_option("--draw", check->draw, "write a picture of the mechanism: FILE.svg")
+  command
+      ->add_option("--draw", check->draw,
+                   "write a picture of the mechanism: FILE.svg, or FILE.html to turn "
+                   "and zoom")
       ->type_name("FILE");
   command->add_flag("--strict", check->strict, kStrictHelp);
   command->add_flag("--json", check->json, "print JSON instead of text");

@@ -6,12 +6,16 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
+#include <optional>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include "vmech/apps/commands.h"
 #include "vmech/apps/files/file_kind.h"
 #include "vmech/apps/haptic/haptic_session.h"
+#include "vmech/apps/haptic/haptic_view.h"
 #include "vmech/dynamics/in_hand/passive_joints.h"
 #include "vmech/hw_interface/loop/replay_master.h"
 #include "vmech/hw_interface/loop/runner.h"
@@ -136,9 +140,16 @@ struct HeldMechanism {
 /// Runs the loop of a configured master and reports.
 int Hold(const HeldMechanism& held, HapticArguments arguments, Master* master) {
   arguments.grasp = held.subject.mechanism.grasps[held.subject.grasp].name;
-  const Rendering rendering =
+  Rendering rendering =
       MakeRendering({arguments.coupling, arguments.scale, arguments.stiffness, arguments.inertia},
                     held.tree, held.subject.grasp, held.q, master->info());
+  ShownTick* shown = nullptr;
+  if (arguments.view) {
+    auto tick =
+        std::make_unique<ShownTick>(std::move(rendering.tick), PictureOf(held.tree, held.q));
+    shown = tick.get();
+    rendering.tick = std::move(tick);
+  }
   WallClock wall;
   FreeRunningClock free;
   LoopClock* clock = &wall;
@@ -147,6 +158,12 @@ int Hold(const HeldMechanism& held, HapticArguments arguments, Master* master) {
                 clock);
   if (!arguments.quiet) fmt::print("{}{}", BoundsReport(master->info()), rendering.report);
   RunSummary summary;
+  std::optional<HapticView> view;
+  if (shown != nullptr) {
+    view.emplace(held.tree, shown, runner);
+    fmt::print("The session is shown at\n  {}\n", view->url());
+    std::fflush(stdout);
+  }
   {
     const InterruptScope interrupt(&runner);
     const StatusLine line(runner, arguments.quiet);
@@ -207,7 +224,7 @@ int RunHaptic(const HapticArguments& arguments) {
   const HeldMechanism held(arguments);
   const std::unique_ptr<Master> master =
       MakeMaster({arguments.master, arguments.rate, ParseGrip(arguments.grip), held.R_WD, held.X_WG,
-                  held.subject.law, arguments.gripper});
+                  held.subject.law, held.subject.end, arguments.gripper});
   master->Configure();
   return Hold(held, arguments, master.get());
 }

@@ -34,7 +34,8 @@ HapticSubject ReadHeldStudy(const std::filesystem::path& file) {
   if (!study.study.external.empty()) {
     throw FileErrors(file.string(), "external loads are not rendered to a hand; leave them out");
   }
-  return {std::move(study.study.mechanism), study.study.hand->grasp, study.study.hand->law};
+  return {std::move(study.study.mechanism), study.study.hand->grasp, study.study.hand->law,
+          study.study.times.back()};
 }
 
 /// The part of a word behind the mark of its kind: "FILE" of "replay:FILE".
@@ -58,9 +59,9 @@ std::unique_ptr<Master> MakeSimulated(const MasterRequest& request) {
   options.hand = ImpedanceOf(request.grip);
   const Posed X_DH =
       ArmModel(std::make_shared<const ArmDescription>(SarcosMasterArm(options.hand.mass))).X_DH();
-  options.motion = request.law
-                       ? HandMotionOf(*request.law, GraspedAt(request.R_WD, X_DH, request.X_WG))
-                       : Wander(X_DH, kReach, kTurn, 1);
+  options.motion = request.law ? HandMotionOf(*request.law, request.end,
+                                              GraspedAt(request.R_WD, X_DH, request.X_WG))
+                               : Wander(X_DH, kReach, kTurn, 1);
   if (request.gripper) options.squeeze = SqueezeWithPauses;
   return std::make_unique<SimulatedMaster>(options);
 }

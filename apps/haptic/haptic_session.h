@@ -19,6 +19,7 @@ struct HapticSubject {
   Mechanism mechanism;
   int grasp = -1;
   std::optional<HandLaw> law;  ///< of the simulated operator's hand; none: it wanders
+  double end = 0;              ///< of the law [s]; it stands still from then on
 };
 
 /// Reads a mechanism, or a study that a hand moves. `grasp` by name; empty: the study's, or the
@@ -53,6 +54,7 @@ struct MasterRequest {
   Matrix3d R_WD = Matrix3d::Identity();
   Posed X_WG;
   std::optional<HandLaw> law;
+  double end = 0;        ///< of the law [s]
   bool gripper = false;  ///< the simulated operator works it
 };
 std::unique_ptr<Master> MakeMaster(const MasterRequest& request);

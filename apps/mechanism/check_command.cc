@@ -10,6 +10,8 @@
 #include "vmech/apps/files/inputs_apart.h"
 #include "vmech/apps/files/output_folder.h"
 #include "vmech/apps/mechanism/check.h"
+#include "vmech/apps/view/meshes.h"
+#include "vmech/apps/view/view_page.h"
 #include "vmech/mechanisms/files/document.h"
 #include "vmech/mechanisms/files/reader.h"
 
@@ -30,15 +32,20 @@ ExitCode CodeOf(const MechanismCheck& check, bool strict) {
 }
 
 /// A picture of a mechanism as text, by the ending of the file that it is for.
-std::string PictureOf(const MechanismCheck& check, const std::filesystem::path& file) {
+std::string PictureOf(const MechanismCheck& check, const CheckArguments& arguments) {
+  const std::filesystem::path& file = arguments.draw;
   if (file.extension() == ".svg") return DrawMechanism(check.tree);
-  throw OptionError(fmt::format("--draw: the ending of {} does not say what to draw: .svg",
+  if (file.extension() == ".html") {
+    const std::filesystem::path meshes = MeshFolderOf(arguments.mechanisms[0]);
+    return MechanismPage(check.tree, ReadMeshes(check.tree.mechanism, meshes), VMECH_VERSION);
+  }
+  throw OptionError(fmt::format("--draw: the ending of {} does not say what to draw: .svg, .html",
                                 Quoted(file.string())));
 }
 
 void WritePicture(const MechanismCheck& check, const CheckArguments& arguments) {
   const std::filesystem::path& file = arguments.draw;
-  const std::string picture = PictureOf(check, file);
+  const std::string picture = PictureOf(check, arguments);
   RequireOutputsApart(arguments.mechanisms, {file});
   OutputFolder folder(file.has_parent_path() ? file.parent_path() : ".");
   folder.Write(file.filename().string(), picture);

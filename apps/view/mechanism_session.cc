@@ -13,6 +13,7 @@
 
 #include "vmech/apps/view/json_text.h"
 #include "vmech/apps/view/scene.h"
+#include "vmech/kinematics/tree/link_poses.h"
 #include "vmech/mechanisms/files/flow_map.h"
 #include "vmech/mechanisms/files/writer.h"
 
@@ -209,7 +210,7 @@ std::string MechanismSession::FindModes() {
   modes_.clear();
   for (const AssemblyMode& mode : found.modes) {
     modes_.push_back(mode.q);
-    modes.push_back({{"poses", PosesOf(screen_.LinksAt(mode.q))}});
+    modes.push_back({{"poses", PosesOf(LinkPoses(screen_.tree(), mode.q))}});
   }
   return JsonText(Json{{"modes", modes}, {"note", found.BriefReport()}});
 }

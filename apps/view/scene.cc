@@ -7,7 +7,7 @@
 #include "vmech/apps/view/base64.h"
 #include "vmech/apps/view/json_text.h"
 #include "vmech/kinematics/loops/assembled_mechanism.h"
-#include "vmech/kinematics/tree/forward_kinematics.h"
+#include "vmech/kinematics/tree/link_poses.h"
 #include "vmech/mechanisms/freedoms.h"
 
 namespace vmech {
@@ -76,12 +76,9 @@ Json JointsOf(const KinematicTree& tree) {
 }
 
 Json StartOf(const KinematicTree& tree) {
-  const VectorXd q = StartCoordinates(tree);
-  TreeWorkspace<double> ws(tree);
-  ForwardKinematics(tree, q.data(), &ws);
   Json poses = Json::array();
-  for (int link = 0; link < static_cast<int>(tree.mechanism.links.size()); ++link) {
-    poses.push_back(SevenOf(PoseInWorld(ws, tree.NodeOfLink(link), tree.X_node_link(link))));
+  for (const Posed& X_WL : LinkPoses(tree, StartCoordinates(tree))) {
+    poses.push_back(SevenOf(X_WL));
   }
   return {{"poses", std::move(poses)}, {"coordinates", StartOfFreedoms(tree.mechanism)}};
 }

@@ -17,7 +17,6 @@
 #include "vmech/apps/report/motion_scene.h"
 #include "vmech/apps/view/mechanism_session.h"
 #include "vmech/apps/view/meshes.h"
-#include "vmech/apps/view/scene.h"
 #include "vmech/apps/view/view_page.h"
 #include "vmech/kinematics/loops/assembled_mechanism.h"
 #include "vmech/mechanisms/files/reader.h"
@@ -105,13 +104,7 @@ void ViewMechanism(const ViewArguments& arguments) {
       arguments.meshes.empty() ? MeshFolderOf(arguments.file) : arguments.meshes;
   const std::vector<std::string> meshes = ReadMeshes(mechanism, folder);
   ServeMechanism(mechanism, arguments.file, arguments, [&](const KinematicTree& tree) {
-    Scene scene;
-    scene.title = mechanism.name;
-    scene.version = VMECH_VERSION;
-    scene.tree = &tree;
-    scene.meshes = meshes;
-    scene.session = "mechanism";
-    return ViewPage(mechanism.name, SceneJson(scene));
+    return MechanismPage(tree, meshes, VMECH_VERSION, "mechanism");
   });
 }
 

@@ -1,6 +1,9 @@
 #include "vmech/apps/view/view_page.h"
 
 #include <string_view>
+#include <utility>
+
+#include "vmech/apps/view/scene.h"
 
 // Files of page/ and what is made of them, embedded by embedded.S.
 extern "C" {
@@ -47,6 +50,17 @@ std::string ViewPage(const std::string& title, const std::string& scene_json) {
   Replace("<!--vmech:script-->", ScriptElement(Between(vmech_page_script, vmech_page_script_end)),
           &page);
   return page;
+}
+
+std::string MechanismPage(const KinematicTree& assembled, std::vector<std::string> meshes,
+                          std::string_view version, std::string_view session) {
+  Scene scene;
+  scene.title = assembled.mechanism.name;
+  scene.version = version;
+  scene.tree = &assembled;
+  scene.meshes = std::move(meshes);
+  scene.session = session;
+  return ViewPage(scene.title, SceneJson(scene));
 }
 
 html::Markup ViewPlace() {

@@ -93,6 +93,7 @@ class Runner {
   void EmergencyStop() noexcept { emergency_stop_ = true; }
 
   const LiveStatus& live() const noexcept { return live_; }
+  double period() const noexcept { return period_; }  ///< [s]
   /// The ticks that were kept, oldest first.
   Recording Kept() const;
 

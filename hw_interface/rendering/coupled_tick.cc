@@ -123,6 +123,15 @@ TickOutput CoupledTick::Step(const TickInput& input, std::span<double> channels)
   return out;
 }
 
+/// The coupling carries what moves the mechanism and what it does not allow in one.
+void CoupledTick::Show(TickPicture* picture) const noexcept {
+  picture->q = dynamics_.q();
+  picture->joints = dynamics_.joints();
+  picture->X_WH = PoseOf(hand_.X);
+  picture->X_WG = dynamics_.X_WG();
+  picture->dynamic = dynamics_.w();
+}
+
 CoupledStatus CoupledTick::Move(const TickInput& input) noexcept {
   if (!input.held && holds_) {
     dynamics_.LetGo();

@@ -57,6 +57,8 @@ class CoupledTick : public Tick {
   void Reset() noexcept override;
   TickOutput Step(const TickInput& input, std::span<double> channels) noexcept override;
 
+  void Show(TickPicture* picture) const noexcept override;
+
   const CoupledDynamics& dynamics() const noexcept { return dynamics_; }
   const CoupledSummary& summary() const noexcept { return summary_; }
   /// Largest force of each joint since the hand took hold [N].

@@ -6,7 +6,8 @@
 
 namespace vmech {
 
-/// The target of a simulated operator whose hand is to move by a law in the world.
-HandMotion HandMotionOf(const HandLaw& law, const Registration& registration);
+/// The target of a simulated operator whose hand is to move by a law in the world until `end` [s],
+/// and to stand there from then on.
+HandMotion HandMotionOf(const HandLaw& law, double end, const Registration& registration);
 
 }  // namespace vmech

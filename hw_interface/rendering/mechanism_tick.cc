@@ -68,6 +68,15 @@ std::vector<std::string> MechanismTick::ChannelNames() const {
   return names;
 }
 
+void MechanismTick::Show(TickPicture* picture) const noexcept {
+  picture->q = tracker_.q();
+  picture->joints = dynamics_.joints();
+  picture->X_WH = X_WH_;
+  picture->X_WG = X_WG_;
+  picture->dynamic = dynamics_.w_d();
+  picture->constraint = w_c_;
+}
+
 void MechanismTick::Reset() noexcept {
   motion_.Reset();
   for (AdaptiveWindow& window : slip_) window.Reset();
@@ -94,7 +103,9 @@ TickOutput MechanismTick::Step(const TickInput& input, std::span<double> channel
   const ContactLaw& law = options_.law;
   out.status = IsHeld(track_) ? TickStatus::kHeld : TickStatus::kOk;
   // Paper eq. (12): the hand feels the opposite of what it does to the mechanism.
-  out.F_Ho_W = -(dynamics_.w_d() + law.Wrench(e1, slip_rate_));
+  X_WH_ = input.X_WH;
+  w_c_ = law.Wrench(e1, slip_rate_);
+  out.F_Ho_W = -(dynamics_.w_d() + w_c_);
   out.stored_energy = dynamics_.Energy() + law.StoredEnergy(e1);
   if (!input.held) out.F_Ho_W.setZero();
   Report(e1, channels);

@@ -45,6 +45,8 @@ class MechanismTick : public Tick {
   void Reset() noexcept override;
   TickOutput Step(const TickInput& input, std::span<double> channels) noexcept override;
 
+  void Show(TickPicture* picture) const noexcept override;
+
   const VectorXd& q() const noexcept { return tracker_.q(); }
   const HandDynamics& dynamics() const noexcept { return dynamics_; }
   const TrackSummary& tracking() const noexcept { return tracker_.summary(); }
@@ -63,7 +65,8 @@ class MechanismTick : public Tick {
   Vector6d slip_rate_ = Vector6d::Zero();
   TrackStatus track_ = TrackStatus::kNotRun;
   double period_;
-  Posed X_WG_;
+  Posed X_WH_, X_WG_;
+  Vector6d w_c_ = Vector6d::Zero();  // the pull of the constraint
   PeakForces peaks_;
 };
 

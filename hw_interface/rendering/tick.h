@@ -50,6 +50,17 @@ struct TickOutput {
   double stored_energy = 0;            ///< of the virtual mechanism, see passivity.h [J]
 };
 
+/// What a screen shows of a mechanism in a hand. World axes, SI.
+struct TickPicture {
+  VectorXd q;                   ///< of the mechanism's tree [nq]
+  std::vector<Wrenchd> joints;  ///< every joint's wrench, as JointSample
+  Posed X_WH, X_WG;             ///< the hand and the grasp frame
+  bool holds = true;
+  Vector6d F_Ho_W = Vector6d::Zero();      ///< what the hand is to feel, about Ho
+  Vector6d dynamic = Vector6d::Zero();     ///< w_d: moves the mechanism, about Go
+  Vector6d constraint = Vector6d::Zero();  ///< w_c: what the mechanism does not allow, about Go
+};
+
 /// The virtual side: from the hand to what it feels, once per sample. Implementations allocate in
 /// their constructors only.
 class Tick {
@@ -72,6 +83,8 @@ class Tick {
   /// `channels` has as many entries as there are names.
   [[nodiscard]] virtual TickOutput Step(const TickInput& input,
                                         std::span<double> channels) noexcept = 0;
+  /// Fills a picture that has its sizes: q [nq] and joints. Nothing by default.
+  virtual void Show(TickPicture* picture) const noexcept { (void)picture; }
   /// What became of the mechanism, in lines; nothing by default.
   virtual std::string FullReport() const { return {}; }
 };

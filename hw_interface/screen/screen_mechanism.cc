@@ -14,12 +14,13 @@
 #include "vmech/kinematics/loops/loops.h"
 #include "vmech/kinematics/loops/mobility.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
+#include "vmech/kinematics/tree/link_poses.h"
 
 namespace vmech {
 namespace {
 
 constexpr double kStretch = 5e-4;        // of the characteristic length, under the whole weight
-constexpr double kSlip = 0.05;       // of the characteristic length: the longest stretch
+constexpr double kSlip = 0.05;           // of the characteristic length: the longest stretch
 constexpr double kFrequency = 100;       // of the whole mass on the spring, at least [rad/s]
 constexpr double kMouseLag = 15e-3;      // with which the hand follows the mouse [s]
 constexpr double kPathPeriod = 5e-3;     // between rows of the recorded path [s]
@@ -286,16 +287,6 @@ void ScreenMechanism::Record() {
   path_.points.push_back(dynamics_->X_WG().p);
 }
 
-std::vector<Posed> ScreenMechanism::LinksAt(const VectorXd& q) const {
-  TreeWorkspace<double> ws(*tree_);
-  ForwardKinematics(*tree_, q.data(), &ws);
-  std::vector<Posed> links;
-  for (int link = 0; link < static_cast<int>(mechanism().links.size()); ++link) {
-    links.push_back(PoseInWorld(ws, tree_->NodeOfLink(link), tree_->X_node_link(link)));
-  }
-  return links;
-}
-
 Mechanism ScreenMechanism::MechanismAt(const VectorXd& q) const {
   Mechanism now = mechanism();
   SetStarts(*tree_, q, &now);
@@ -307,7 +298,7 @@ ScreenState ScreenMechanism::State() const {
   ScreenState state;
   state.time = time_;
   state.mode = mode_;
-  state.links = LinksAt(q);
+  state.links = LinkPoses(*tree_, q);
   state.stopped = stopped_;
   const Mechanism now = MechanismAt(q);
   state.coordinates = StartOfFreedoms(now);

@@ -94,8 +94,6 @@ class ScreenMechanism {
   void Advance(int steps);
 
   ScreenState State() const;
-  /// Poses of all links with the tree at q.
-  std::vector<Posed> LinksAt(const VectorXd& q) const;
   /// The mechanism with a closed pose of the tree as its start.
   Mechanism MechanismAt(const VectorXd& q) const;
   /// Since the last grab.

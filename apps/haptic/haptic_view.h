@@ -1,0 +1,29 @@
+#pragma once
+
+#include <memory>
+
+#include "vmech/hw_interface/loop/runner.h"
+#include "vmech/hw_interface/screen/shown_tick.h"
+#include "vmech/kinematics/tree/kinematic_tree.h"
+
+namespace vmech {
+
+/// A page that shows a running session: the hand, the mechanism, the wrenches and the figures of
+/// the loop. It is served by threads of its own while this lives; the loop never waits for them.
+class HapticView {
+ public:
+  /// Keeps references. @throws std::runtime_error if the page cannot be served.
+  HapticView(const KinematicTree& tree, ShownTick* tick, const Runner& runner);
+  ~HapticView();
+
+  std::string url() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+/// A picture of the tree's sizes, for ShownTick.
+TickPicture PictureOf(const KinematicTree& tree, const VectorXd& q);
+
+}  // namespace vmech
