@@ -2,10 +2,13 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "vmech/apps/view/base64.h"
 #include "vmech/apps/view/json_text.h"
+#include "vmech/dynamics/loads/open_components.h"
+#include "vmech/dynamics/loads/pose/external_loads.h"
 #include "vmech/kinematics/loops/assembled_mechanism.h"
 #include "vmech/kinematics/tree/link_poses.h"
 #include "vmech/mechanisms/freedoms.h"
@@ -123,21 +126,50 @@ Json HandOf(const LoadStudy& study, const LoadArrays& arrays) {
   return {{"grasp", study.hand->grasp}, {"wrenches", Base64Of(wrenches)}};
 }
 
+/// About the load's point, world axes.
+Json LoadOf(const ExternalLoad& load, const LoadArrays& arrays) {
+  std::vector<float> wrenches;
+  for (size_t i = 0; i < arrays.pose_count(); ++i) {
+    const bool over_drive = load.over == ExternalLoad::Over::kDriveCoordinate;
+    Wrenchd w = WrenchAt(
+        load, over_drive ? arrays.drives[i * arrays.drive_count].position : arrays.times[i]);
+    if (load.axes == ExternalLoad::Axes::kLink) {
+      const size_t link = i * arrays.link_count + static_cast<size_t>(load.link);
+      w = w.In(arrays.links[link].X_WL.R.transpose());
+    }
+    for (const double f : w.force) wrenches.push_back(static_cast<float>(f));
+    for (const double m : w.moment) wrenches.push_back(static_cast<float>(m));
+  }
+  return {{"link", load.link}, {"point", ArrayOf(load.p_L)}, {"wrenches", Base64Of(wrenches)}};
+}
+
 Json CertaintyOf(const LoadStudyResult& loads) {
   Json all = Json::array();
-  for (const JointCertainty& joint : loads.certainty) {
+  for (size_t j = 0; j < loads.certainty.size(); ++j) {
     Json words = Json::array();
-    for (const Certainty verdict : joint) words.push_back(CertaintyWord(verdict));
+    for (const Certainty verdict : VerdictsThatMatter(loads, j))
+      words.push_back(CertaintyWord(verdict));
     all.push_back(std::move(words));
   }
   return all;
+}
+
+/// Where an axis first has a value, in poses; nothing if it does not.
+std::optional<double> PoseWhere(const std::vector<double>& axis, double value) {
+  for (size_t i = 0; i + 1 < axis.size(); ++i) {
+    const double step = axis[i + 1] - axis[i], part = (value - axis[i]) / step;
+    if (step != 0 && part >= 0 && part <= 1) return static_cast<double>(i) + part;
+  }
+  return std::nullopt;
 }
 
 Json MotionOf(const Scene& scene) {
   const LoadArrays& arrays = scene.loads->poses.arrays();
   Json centres = Json::array();
   for (const SceneAxis::Mark& mark : scene.axis.dead_centres) {
-    centres.push_back({{"axis", mark.value}, {"label", mark.label}});
+    const std::optional<double> pose = PoseWhere(scene.axis.values, mark.value);
+    if (!pose) continue;
+    centres.push_back({{"axis", mark.value}, {"pose", *pose}, {"label", mark.label}});
   }
   Json motion{{"times", Base64Of(arrays.times)},
               {"cycle", scene.study->cycle},
@@ -152,6 +184,10 @@ Json MotionOf(const Scene& scene) {
               {"certainty", CertaintyOf(*scene.loads)},
               {"drives", DrivesOf(*scene.study, arrays)},
               {"dead_centres", std::move(centres)}};
+  motion["loads"] = Json::array();
+  for (const ExternalLoad& load : scene.study->external) {
+    motion["loads"].push_back(LoadOf(load, arrays));
+  }
   if (scene.study->hand) motion["hand"] = HandOf(*scene.study, arrays);
   return motion;
 }

@@ -3,9 +3,17 @@
 const kForceColours = {certain: 0xcf222e, undetermined: 0x8250df, load: 0x1a7f9c, weight: 0x7d8894,
   hand: 0x0b8f63, dynamic: 0xd9822b};
 
-function isCertain(words, begin) {
-  return !words || (words[begin] === "certain" && words[begin + 1] === "certain" &&
-      words[begin + 2] === "certain");
+const kUnloaded = 1e-9;  // of a joint's wrench: what is open and carries nothing matters to nobody
+
+// Is a joint's force (begin 0) or moment (begin 3), as it is loaded, what statics says?
+function isCertain(words, begin, wrenches, at) {
+  if (!words || !wrenches) return true;
+  let largest = 0;
+  for (let k = at; k < at + 6; ++k) largest = Math.max(largest, Math.abs(wrenches[k]));
+  for (let k = begin; k < begin + 3; ++k) {
+    if (words[k] !== "certain" && Math.abs(wrenches[at + k]) > kUnloaded * largest) return false;
+  }
+  return true;
 }
 
 class Forces {
@@ -76,11 +84,11 @@ class Forces {
       this.toWorld(now.poses, anchor, now.wrenches, at, force);
       place(now.poses, 7 * anchor.link, anchor.point, point);
       if (shown.forces) {
-        this.arrow(isCertain(words, 0) ? "certain" : "undetermined", point, force, "force");
+        this.arrow(isCertain(words, 0, now.wrenches, at) ? "certain" : "undetermined", point, force, "force");
       }
       if (shown.moments) {
         this.toWorld(now.poses, anchor, now.wrenches, at + 3, moment);
-        this.arrow(isCertain(words, 3) ? "certain" : "undetermined", point, moment, "moment");
+        this.arrow(isCertain(words, 3, now.wrenches, at) ? "certain" : "undetermined", point, moment, "moment");
       }
     }
   }

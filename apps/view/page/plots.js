@@ -56,7 +56,7 @@ function addJointSets(scene, rows, index, add) {
     add(title, unitName, [...["x", "y", "z"].map((axis, k) => ({name: axis,
       at: (i) => value(i, k), dashed: words && words[begin + k] !== "certain"})),
       {name: "size", at: (i) => Math.hypot(value(i, 0), value(i, 1), value(i, 2)), strong: true,
-        dashed: !isCertain(words, begin)}]);
+        dashed: words && words.slice(begin, begin + 3).some((word) => word !== "certain")}]);
   }
 }
 

@@ -76,7 +76,7 @@ class Values {
     setText(cells[0], w ? shown(Math.hypot(w[at], w[at + 1], w[at + 2])) : "–");
     setText(cells[1], w ? shown(Math.hypot(w[at + 3], w[at + 4], w[at + 5])) : "–");
     setText(cells[2], now.atLimit.includes(index) ? "at a limit"
-        : isCertain(words, 0) && isCertain(words, 3) ? "" : "not determined");
+        : isCertain(words, 0, w, at) && isCertain(words, 3, w, at) ? "" : "not determined");
   }
 
   buildJoint(joint, index) {
