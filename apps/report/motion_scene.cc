@@ -29,7 +29,8 @@ std::string MotionScene(const StudyFile& file, const LoadStudyResult& loads,
   scene.tree = &tree;
   scene.meshes = ReadMeshes(tree.mechanism, MeshFolderOf(file.mechanism_path));
   scene.study = &file.study;
-  scene.loads = &loads;
+  // Without poses of the links there is nothing to play.
+  scene.loads = loads.poses.arrays().links.empty() ? nullptr : &loads;
   scene.axis = {cycle.axis.title, cycle.axis.unit, cycle.values, {}};
   for (const plot::Station& centre : cycle.dead_centres) {
     scene.axis.dead_centres.push_back({centre.x, centre.label});

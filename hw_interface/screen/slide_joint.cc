@@ -16,7 +16,7 @@ namespace {
 constexpr double kLargestTurn = 0.05;   // of a step [rad]
 constexpr double kLargestShift = 0.02;  // [characteristic lengths]
 constexpr double kSmallest = 1e-4;      // of the largest: where halving ends
-constexpr double kFarOff = 20;          // steps that another coordinate may move in one
+constexpr double kFarthest = 0.2;       // that another coordinate may move in a step, as above
 
 /// The largest move of any coordinate, angles in radians, shifts in characteristic lengths.
 double LargestMove(const KinematicTree& tree, const VectorXd& from, const VectorXd& to) {
@@ -58,7 +58,7 @@ SlideResult SlideJoint(const Mechanism& assembled, int joint, int freedom, doubl
     const bool closed = Assemble(tree, nearby, &next).closed;
     Mechanism there = result.mechanism;
     if (closed) SetStarts(tree, next, &there);
-    const bool jumps = LargestMove(tree, q, next) > kFarOff * (turns ? step : step / tree.length);
+    const bool jumps = LargestMove(tree, q, next) > kFarthest;
     if (closed && !jumps && StartsOutsideLimits(there).size() <= outside && move > 0) {
       q = next;
       result.mechanism = std::move(there);

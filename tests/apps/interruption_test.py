@@ -109,7 +109,7 @@ class Loads(Interrupted):
         self.succeed("loads", "old.yaml", "--out", "old")
         self.succeed("loads", "new.yaml", "--out", "new")
         old, new = contents(self.folder / "old", LOADS), contents(self.folder / "new", LOADS)
-        self.assertEqual((len(old), len(new)), (6, 6))
+        self.assertEqual((len(old), len(new)), (7, 7))
         self.assertNotEqual(old["loads.csv"], new["loads.csv"])
         return old, new
 
