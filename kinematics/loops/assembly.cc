@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 
@@ -268,12 +269,23 @@ void TryOtherStarts(const KinematicTree& tree, const AssemblyOptions& options,
   }
 }
 
+/// What the coordinates of points leave of loop errors by their rounding, where a mechanism is far
+/// larger than its characteristic length.
+double RoundingOf(const KinematicTree& tree, const TreeWorkspace<double>& ws) {
+  constexpr double kUnits = 4 * std::numeric_limits<double>::epsilon();
+  double reach = 0;
+  for (int node = 0; node < static_cast<int>(tree.nodes.size()); ++node) {
+    reach = std::max(reach, (PoseInWorld(ws, node, {}).p - ws.reference).norm());
+  }
+  return kUnits * reach / tree.length;
+}
+
 /// Assemble for loops that belong together.
-AssemblySummary AssembleCluster(const KinematicTree& tree, const AssemblyOptions& options,
-                                VectorXd* q) {
+AssemblySummary AssembleCluster(const KinematicTree& tree, AssemblyOptions options, VectorXd* q) {
   AssemblySummary summary;
   std::optional<PenaltyIteration> best;
   best.emplace(tree, options, *q, *q);
+  options.tolerance = std::max(options.tolerance, RoundingOf(tree, best->ws()));
   summary.start_error = best->error();
   summary.iterations = CloseLoops(options, &*best);
   if (best->error() > kRounding) TryOtherStarts(tree, options, *q, &best, &summary);
