@@ -85,7 +85,7 @@ struct HapticArguments {
 int RunHaptic(const HapticArguments& arguments);
 
 struct ViewArguments {
-  std::filesystem::path file;       ///< mechanism, study or result folder
+  std::filesystem::path file;       ///< mechanism, study, result folder or recording
   std::filesystem::path meshes;     ///< of the links; empty: "<mechanism>-meshes" beside the file
   std::optional<double> tolerance;  ///< instead of the mechanism's own
   int port = 0;                     ///< 0: any free one
@@ -96,6 +96,7 @@ struct ReplayArguments {
   std::filesystem::path recording;  ///< of vmech haptic
   std::filesystem::path file;       ///< mechanism or study; empty: that of the recording
   std::filesystem::path motion;     ///< where the hand's motion goes as a table; empty: nowhere
+  bool view = false;                ///< shown on a page, at the speed of the recording
   bool quiet = false;
 };
 int RunReplay(const ReplayArguments& replay);

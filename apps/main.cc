@@ -206,13 +206,15 @@ constexpr const char* kViewHelp =
     "Shows a mechanism in the browser, to be looked at and taken in hand: any link can be dragged\n"
     "with the mouse, joints have sliders, and the loads on the joints are read off. Of a study "
     "the\n"
-    "motion is played; of a result folder of `vmech loads` the motion that is in it. The page is "
+    "motion is played; of a result folder of `vmech loads` the motion that is in it; a "
+    "recording\n"
+    "of `vmech haptic` runs again. The page is "
     "on\n"
     "this machine alone (127.0.0.1), at an address that nobody can guess.";
 
 void AddView(CLI::App* app, vmech::ViewArguments* view) {
   CLI::App* command = app->add_subcommand("view", kViewHelp);
-  command->add_option("FILE", view->file, "mechanism, study or result folder")
+  command->add_option("FILE", view->file, "mechanism, study, result folder or recording")
       ->required()
       ->type_name("FILE");
   command
@@ -239,6 +241,8 @@ void AddReplay(CLI::App* app, vmech::ReplayArguments* replay) {
       ->type_name("FILE");
   command->add_option("--motion", replay->motion, "write the hand's motion as a table")
       ->type_name("FILE");
+  command->add_flag("--view", replay->view,
+                    "show it in the browser, at the speed of the recording");
   command->add_flag("-q,--quiet", replay->quiet, "print nothing but errors");
 }
 

@@ -212,7 +212,8 @@ HapticArguments ArgumentsOf(const Recording& recording, const ReplayArguments& r
   arguments.inertia = number("inertia");
   arguments.gripper = number("gripper") != 0;
   arguments.seconds = recording.period * static_cast<double>(recording.ticks.size());
-  arguments.free_running = true;
+  arguments.free_running = !replay.view;
+  arguments.view = replay.view;
   arguments.post_mortem = false;
   arguments.quiet = replay.quiet;
   return arguments;

@@ -28,7 +28,8 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr Taken kTaken{"view", {FileKind::kMechanism, FileKind::kStudy, FileKind::kResults}};
+constexpr Taken kTaken{
+    "view", {FileKind::kMechanism, FileKind::kStudy, FileKind::kResults, FileKind::kRecording}};
 
 /// Interruptions become something to wait for, in all threads that begin while it lives.
 class Interruptions {
@@ -148,6 +149,12 @@ int RunView(const ViewArguments& arguments) {
     case FileKind::kUnknown:
       ViewMechanism(arguments);
       break;
+    case FileKind::kRecording: {
+      ReplayArguments replay;
+      replay.recording = arguments.file;
+      replay.view = true;
+      return RunReplay(replay);
+    }
     default:
       RefuseOtherKinds(kTaken, arguments.file);
   }
