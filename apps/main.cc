@@ -204,13 +204,10 @@ void AddHaptic(CLI::App* app, vmech::HapticArguments* haptic) {
 
 constexpr const char* kViewHelp =
     "Shows a mechanism in the browser, to be looked at and taken in hand: any link can be dragged\n"
-    "with the mouse, joints have sliders, and the loads on the joints are read off. Of a study "
-    "the\n"
-    "motion is played; of a result folder of `vmech loads` the motion that is in it; a "
-    "recording\n"
-    "of `vmech haptic` runs again. The page is "
-    "on\n"
-    "this machine alone (127.0.0.1), at an address that nobody can guess.";
+    "with the mouse, joints have sliders, the loads on the joints are read off. The motion of a\n"
+    "study or a result folder of `vmech loads` is played, a recording of `vmech haptic` runs "
+    "again.\n"
+    "The page is on this machine alone (127.0.0.1), at an address that nobody can guess.";
 
 void AddView(CLI::App* app, vmech::ViewArguments* view) {
   CLI::App* command = app->add_subcommand("view", kViewHelp);

@@ -53,9 +53,12 @@ class LivePanel {
   buildSliders() {
     const {scene} = this.view, box = make("div", {class: "vv-sliders"});
     this.sliders = [];
-    scene.joints.forEach((joint, index) => joint.freedoms.forEach((freedom, k) => {
-      box.append(this.buildSlider(joint, index, freedom, k));
-    }));
+    scene.joints.forEach((joint, index) => {
+      if (joint.type === "spherical") return;  // has no single coordinate to set
+      joint.freedoms.forEach((freedom, k) => {
+        box.append(this.buildSlider(joint, index, freedom, k));
+      });
+    });
     return make("details", {class: "vv-group"}, make("summary", {text: "Joints"}), box);
   }
 
