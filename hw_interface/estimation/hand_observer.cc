@@ -13,7 +13,7 @@
 namespace vmech {
 namespace {
 
-constexpr double kLighter = 1.5;                   // c
+constexpr double kLighter = 1.0;                   // c
 constexpr double kMobilityTime = 0.2;              // [s]
 constexpr double kLosing = 0.01, kGaining = 0.05;  // [s]: of trust
 constexpr double kSmoothing = 2e-3;                // [s]
@@ -82,8 +82,6 @@ void HandObserver::Update(const MasterState& state, const Vector6d& F_Ho_D, int 
   if (until_mobility_-- <= 0) FindMobility(state);
   periods = std::clamp(periods, 1, kMostPeriods);
   const double elapsed = periods * period_;
-  const double change = AtStop(state) ? -elapsed / kLosing : elapsed / kGaining;
-  trust_ = std::clamp(trust_ + change, 0.0, 1.0);
   const Screw step = HandError(X_last_, X);
   displacement_ += step;
   X_last_ = X;
@@ -102,6 +100,10 @@ void HandObserver::Update(const MasterState& state, const Vector6d& F_Ho_D, int 
   const Screw within{Clamped(ahead.linear, resolution_.linear),
                      Clamped(ahead.angular, resolution_.angular)};
   x_ = displacement_ + within;
+  const Screw beyond = ahead - within;
+  const bool strays = Power(beyond, beyond) > 0;
+  const double change = strays || AtStop(state) ? -elapsed / kLosing : elapsed / kGaining;
+  trust_ = std::clamp(trust_ + change, 0.0, 1.0);
   hand_ = {Displaced(X, trust_ * within), trust_ * v_ + (1 - trust_) * differences_};
 }
 

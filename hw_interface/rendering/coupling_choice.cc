@@ -67,6 +67,14 @@ double OrInfinite(double peak) {
   return peak > 0 ? peak : std::numeric_limits<double>::infinity();
 }
 
+/// A device that exerts forces and no moments cannot pay for moments on the mechanism.
+void WithoutMoments(const DeviceInfo& device, HandCoupling* coupling) {
+  const bool has_force = device.takes_wrench || device.takes_torque;
+  if (!has_force || device.angular.peak > 0) return;
+  coupling->stiffness.tail<3>().setZero();
+  coupling->damping.tail<3>().setZero();
+}
+
 }  // namespace
 
 SafetyOptions CouplingChoice::Safety() const {
@@ -86,6 +94,7 @@ CouplingChoice ChooseCoupling(const KinematicTree& tree, const GraspFrame& grasp
   choice.inertia_ratio = InertiaRatio(tree, grasp, q, device);
   if (choice.inertia_ratio == 0) {
     choice.coupling = SoftCoupling(device);
+    WithoutMoments(device, &choice.coupling);
     return choice;
   }
   const double fastest = kPhase / (0.5 * device.period + device.delay + smoothing);
@@ -96,6 +105,7 @@ CouplingChoice ChooseCoupling(const KinematicTree& tree, const GraspFrame& grasp
   choice.coupling.damping = 2 * kDampingRatio * rate * D;
   choice.coupling.max_force = OrInfinite(device.linear.peak);
   choice.coupling.max_moment = OrInfinite(device.angular.peak);
+  WithoutMoments(device, &choice.coupling);
   choice.scale = std::min(1.0, std::pow(rate / wanted, 2));
   HandCoupling unlimited = choice.coupling;
   unlimited.max_force = unlimited.max_moment = OrInfinite(0);

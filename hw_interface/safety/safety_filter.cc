@@ -100,9 +100,10 @@ SafetyOutput SafetyFilter::Apply(const SafetyInput& input) noexcept VMECH_NONBLO
     return out;
   }
   Screw F = ScrewOf(input.F_Ho_D);
+  if (options_.max_moment == 0) F.angular = Double4{};
   Ramp(&F, &out);
   Damp(&F, &out);
-  Clamp(&F, &out);
+  Clamp(input.room, &F, &out);
   Slew(&F, &out);
   out.F_Ho_D = Vector6Of(F);
   if (out.stages != 0) CountStages(out.stages);
@@ -114,8 +115,15 @@ void SafetyFilter::CountStages(std::uint32_t stages) noexcept {
   for (int i = 0; i < kSafetyStages; ++i) counters_.stages[i] += (stages >> i) & 1;
 }
 
+/// A sample that the filter has not seen; a device may repeat its last one.
+bool SafetyFilter::IsFresh(const SafetyInput& input) const noexcept {
+  const bool seen = has_pose_ && input.state->sequence == last_sample_.sequence;
+  return input.io == IoStatus::kOk && !seen;
+}
+
 ForceOff SafetyFilter::Gate(const SafetyInput& input) noexcept {
-  missing_ = input.io == IoStatus::kNoNewData ? missing_ + 1 : 0;
+  missing_ = IsFresh(input) ? 0 : missing_ + 1;
+  if (missing_ > 0) catching_up_ = true;
   if (latched_ != ForceOff::kNone) return latched_;
   if (input.state->emergency_stop) return ForceOff::kEmergencyStop;
   if (input.lifecycle != Lifecycle::kActive && input.lifecycle != Lifecycle::kFault) {
@@ -136,29 +144,35 @@ ForceOff SafetyFilter::Gate(const SafetyInput& input) noexcept {
   return ForceOff::kNone;
 }
 
-/// Displacement, twist and energy since the last sample.
+/// Displacement, twist and energy since the last sample, however long ago that was.
 void SafetyFilter::Observe(const SafetyInput& input) noexcept {
+  if (!IsFresh(input)) return;
   const MasterState& state = *input.state;
-  if (!open_) has_pose_ = false;
-  if (has_pose_ && state.sequence == last_sequence_) return;
-  const Frame X = FrameOf(state.X_DH);
   if (has_pose_) {
-    const Screw dX = HandError(X_last_, X);
-    const double elapsed = static_cast<double>(state.sequence - last_sequence_) * period_;
-    // This tick's command is still to come. Somebody else carries what the soft start withholds.
-    const std::uint64_t command = CommandAtWork(state, counters_.ticks - 1);
-    Screw wrench = ExertedBy(command, state);
-    if (command > 0) wrench += withheld_[command % kMemory];
-    passivity_.Observe(wrench, dX, elapsed, input.stored_energy);
+    const Screw dX = HandError(FrameOf(last_sample_.X_DH), FrameOf(state.X_DH));
+    const double elapsed = PeriodsBetween(last_sample_, state, period_) * period_;
+    Account(input, dX, elapsed);
     constexpr double kSmoothing = 5e-3;  // [s]: single encoder steps do not trip
     smooth_V_ += std::min(1.0, elapsed / kSmoothing) * ((1 / elapsed) * dX - smooth_V_);
   } else {
+    Account(input, {}, period_);
     smooth_V_ = {};
-    passivity_.Observe({}, {}, period_, input.stored_energy);
   }
-  X_last_ = X;
-  last_sequence_ = state.sequence;
+  last_sample_ = state;
   has_pose_ = true;
+}
+
+/// Nothing was at work while the gate was closed.
+void SafetyFilter::Account(const SafetyInput& input, const Screw& dX, double elapsed) noexcept {
+  if (!open_) {
+    passivity_.Observe({}, {}, elapsed, input.stored_energy);
+    return;
+  }
+  // This tick's command is still to come. Somebody else carries what the soft start withholds.
+  const std::uint64_t command = CommandAtWork(*input.state, counters_.ticks - 1);
+  Screw wrench = ExertedBy(command, *input.state);
+  if (command > 0) wrench += withheld_[command % kMemory];
+  passivity_.Observe(wrench, dX, elapsed, input.stored_energy);
 }
 
 Vector6d SafetyFilter::WrenchAtWork(const MasterState& state) const noexcept {
@@ -204,18 +218,26 @@ void SafetyFilter::Damp(Screw* F, SafetyOutput* out) noexcept {
   if (passivity_.Control(F)) out->stages |= kDamped;
 }
 
-void SafetyFilter::Clamp(Screw* F, SafetyOutput* out) noexcept {
-  const double scale = Shrink(*F, options_.max_force, options_.max_moment);
-  if (scale == 1) return;
+void SafetyFilter::Clamp(const WrenchLimit& room, Screw* F, SafetyOutput* out) noexcept {
+  const double scale = std::min(Shrink(*F, options_.max_force, options_.max_moment),
+                                room.Share(Length(F->linear), Length(F->angular)));
+  if (scale >= 1) return;
   *F = scale * *F;
   out->stages |= kClamped;
 }
 
 void SafetyFilter::Slew(Screw* F, SafetyOutput* out) noexcept {
   const Screw change = *F - last_;
-  const double scale =
-      Shrink(change, options_.force_slew * period_, options_.moment_slew * period_);
-  if (scale == 1) return;
+  double force = options_.force_slew, moment = options_.moment_slew;
+  if (catching_up_) {
+    force = std::min(force, kCatchUp);
+    moment = std::min(moment, kCatchUpMoment);
+  }
+  const double scale = Shrink(change, force * period_, moment * period_);
+  if (scale == 1) {
+    catching_up_ = missing_ > 0;
+    return;
+  }
   *F = last_ + scale * change;
   out->stages |= kSlewed;
 }
