@@ -20,6 +20,8 @@ constexpr double kFaithful = 100;  // w_v [1/s]: 3 Hz over it, squared, is 3.6 %
 constexpr double kMargin = 1.2;    // where the device bears it
 constexpr double kPhase = 0.7;     // w_d times the loop's delay [rad]
 constexpr double kDampingRatio = 0.4;
+constexpr double kJerk = 20;    // [m/s^2]: what a step of the encoders may do to the handle
+constexpr double kLever = 0.1;  // [m], of a hand that turns
 
 /// Basis of C v = 0 [nv, mobility].
 MatrixXd AllowedMotions(const KinematicTree& tree, TreeWorkspace<double>* ws) {
@@ -36,6 +38,21 @@ Vector6d HandleMasses(const GraspFrame& grasp, const DeviceInfo& device) {
   Vector6d D;
   D << Vector3d::Constant(device.linear.mass), Vector3d::Constant(turning);
   return D;
+}
+
+/// w_d: as fast as hold, delay and filter let a handle swing on the coupling, and no faster than the
+/// steps of its encoders allow, w^2 D <= kJerk.
+double FastestRate(const DeviceInfo& device, double smoothing) {
+  const double by_delay = kPhase / (0.5 * device.period + device.delay + smoothing);
+  const double step = std::max(device.linear.resolution, kLever * device.angular.resolution);
+  return step > 0 ? std::min(by_delay, std::sqrt(kJerk / step)) : by_delay;
+}
+
+double UnseenWork(const DeviceInfo& device) {
+  constexpr double kLeast = 0.02, kMost = 0.5;  // [J]
+  const double work = device.linear.peak * device.linear.resolution +
+                      device.angular.peak * device.angular.resolution;
+  return std::clamp(work, kLeast, kMost);
 }
 
 HandCoupling SoftCoupling(const DeviceInfo& device) {
@@ -81,8 +98,9 @@ SafetyOptions CouplingChoice::Safety() const {
   SafetyOptions safety;
   if (inertia_ratio == 0) return safety;
   safety.carried_start = true;
-  safety.passivity.grace = 0.02;
-  safety.passivity.forgiven = 0.1;
+  safety.passivity.grace = unseen_work;
+  safety.passivity.forgiven = 5 * unseen_work;
+  safety.energy_trip = 10 * unseen_work;
   safety.force_slew = 5e4;
   safety.moment_slew = 2500;
   return safety;
@@ -97,7 +115,7 @@ CouplingChoice ChooseCoupling(const KinematicTree& tree, const GraspFrame& grasp
     WithoutMoments(device, &choice.coupling);
     return choice;
   }
-  const double fastest = kPhase / (0.5 * device.period + device.delay + smoothing);
+  const double fastest = FastestRate(device, smoothing);
   const double wanted = kFaithful * std::sqrt(choice.inertia_ratio);
   const double rate = std::min(kMargin * wanted, fastest);
   const Vector6d D = HandleMasses(grasp, device);
@@ -110,6 +128,7 @@ CouplingChoice ChooseCoupling(const KinematicTree& tree, const GraspFrame& grasp
   HandCoupling unlimited = choice.coupling;
   unlimited.max_force = unlimited.max_moment = OrInfinite(0);
   choice.weight = WeightAtHand(tree, grasp, q, unlimited);
+  choice.unseen_work = UnseenWork(device);
   const double bearable = 0.5 * choice.coupling.max_force;
   if (choice.scale * choice.weight > bearable) choice.scale = bearable / choice.weight;
   return choice;

@@ -12,9 +12,12 @@ struct CouplingChoice {
   double scale = 1;          ///< force at the hand over force at the mechanism, at most 1
   double inertia_ratio = 0;  ///< lambda: largest inertia of the mechanism over the handle's own
   double weight = 0;         ///< force of the mechanism on a hand that keeps it here [N]
+  /// What a step of the encoders makes of the largest wrench: the work that a sample cannot tell
+  /// [J].
+  double unseen_work = 0.02;
 
-  /// Safety for a stiff coupling behind encoders of 16 bits: their steps are forgiven as energy,
-  /// and the force may change as fast as the coupling's.
+  /// Safety for a stiff coupling behind encoders: work that they cannot tell is forgiven, ten times
+  /// as much trips, and the force may change as fast as the coupling's.
   SafetyOptions Safety() const;
 };
 

@@ -40,8 +40,9 @@ struct PassivityOptions {
 ///   s = min(1, -E/E_g),   f = 1 + min(0, E + E_g)/E_largest,
 ///
 /// alpha = -E / (T V'WV), at most what the handle's mass takes without being thrown back: m / (2 T
-/// + 4 delay). V is the twist of the last sample; within the grace the less of it, and the more of
-/// its mean over 5 ms, the smaller the debt: encoder steps at rest are no motion.
+/// + 4 delay), T not below a millisecond. V is the twist of the last sample, or over a millisecond;
+/// within the grace the less of it, and the more of its mean over 5 ms, the smaller the debt:
+/// encoder steps at rest are no motion.
 class PassivityController {
  public:
   /// @throws std::invalid_argument as Validate.
