@@ -16,7 +16,7 @@ namespace {
 constexpr double kLighter = 1.0;                   // c
 constexpr double kMobilityTime = 0.2;              // [s]
 constexpr double kLosing = 0.01, kGaining = 0.05;  // [s]: of trust
-constexpr double kSmoothing = 2e-3;                // [s]
+constexpr double kSmoothing = 2;                   // [periods]: of differences
 constexpr double kFinest = 1e-5;                   // [m], [rad]
 
 constexpr double kNoStop = std::numeric_limits<double>::infinity();
@@ -65,7 +65,7 @@ HandObserver::HandObserver(const HandObserverOptions& options, const DeviceInfo&
     upper_[node.v] = tree.mechanism.joints[node.joint].upper[node.freedom];
   }
   gain_ = GainsFor(options.bandwidth, period_);
-  for (int k = 0; k <= kMostPeriods; ++k) new_share_[k] = 1 - std::exp(-k * period_ / kSmoothing);
+  for (int k = 0; k <= kMostPeriods; ++k) new_share_[k] = 1 - std::exp(-k / kSmoothing);
   resolution_ = {Double4Of(Vector3d::Constant(std::max(info.linear.resolution, kFinest))),
                  Double4Of(Vector3d::Constant(std::max(info.angular.resolution, kFinest)))};
 }

@@ -21,6 +21,10 @@ void PassivityOptions::Validate() const {
   CheckRange("PassivityOptions", "largest_debt", largest_debt, 1e-4, 100);
 }
 
+double MostDamping(double mass, const DeviceInfo& info) noexcept {
+  return mass / (2 * std::max(info.period, kShortest) + 4 * info.delay);
+}
+
 PassivityController::PassivityController(const PassivityOptions& options, const DeviceInfo& info)
     : options_(options), period_(info.period) {
   options.Validate();
@@ -33,7 +37,7 @@ PassivityController::PassivityController(const PassivityOptions& options, const 
   // The lighter of the two, as a mass: the angular one turns at the lever.
   double mass = info.linear.mass;
   if (info.angular.mass > 0) mass = std::min(mass, info.angular.mass / lever2);
-  max_damping_ = mass / (2 * std::max(info.period, kShortest) + 4 * info.delay);
+  max_damping_ = MostDamping(mass, info);
 }
 
 void PassivityController::Reset() noexcept {

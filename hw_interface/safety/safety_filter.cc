@@ -37,6 +37,15 @@ SafetyOptions Completed(SafetyOptions options, const DeviceInfo& info) {
   return options;
 }
 
+/// -c V of what a speed is beyond most of the one that trips, and no more than `peak` there.
+Double4 BrakingForce(const Double4& V, double c, double max_speed, double peak) {
+  constexpr double kFree = 0.7;
+  const double speed = Length(V), beyond = speed - kFree * max_speed;
+  if (!(beyond > 0)) return Double4{};
+  c = std::min(c, peak / ((1 - kFree) * max_speed));
+  return (-c * beyond / speed) * V;
+}
+
 /// The factor that brings a pair of vectors within a pair of lengths; at most 1.
 double Shrink(const Screw& F, double force, double moment) {
   const double f2 = Dot(F.linear, F.linear), m2 = Dot(F.angular, F.angular);
@@ -65,6 +74,8 @@ SafetyFilter::SafetyFilter(const SafetyOptions& options, const DeviceInfo& info)
     : options_(Completed(options, info)),
       period_(info.period),
       delay_(info.delay),
+      brake_(MostDamping(info.linear.mass, info)),
+      angular_brake_(MostDamping(info.angular.mass, info)),
       passivity_(options.passivity, info) {}
 
 void SafetyFilter::Restart() noexcept {
@@ -103,6 +114,7 @@ SafetyOutput SafetyFilter::Apply(const SafetyInput& input) noexcept VMECH_NONBLO
   if (options_.max_moment == 0) F.angular = Double4{};
   Ramp(&F, &out);
   Damp(&F, &out);
+  Brake(&F, &out);
   Clamp(input.room, &F, &out);
   Slew(&F, &out);
   out.F_Ho_D = Vector6Of(F);
@@ -218,6 +230,16 @@ void SafetyFilter::Damp(Screw* F, SafetyOutput* out) noexcept {
   if (passivity_.Control(F)) out->stages |= kDamped;
 }
 
+void SafetyFilter::Brake(Screw* F, SafetyOutput* out) const noexcept {
+  const Screw& V = passivity_.V();
+  const Screw brake{
+      BrakingForce(V.linear, brake_, options_.max_speed, options_.max_force),
+      BrakingForce(V.angular, angular_brake_, options_.max_angular_speed, options_.max_moment)};
+  if (Power(brake, brake) == 0) return;
+  *F += brake;
+  out->stages |= kBraked;
+}
+
 void SafetyFilter::Clamp(const WrenchLimit& room, Screw* F, SafetyOutput* out) noexcept {
   const double scale = std::min(Shrink(*F, options_.max_force, options_.max_moment),
                                 room.Share(Length(F->linear), Length(F->angular)));
@@ -272,6 +294,27 @@ const char* NameOf(ForceOff cause) noexcept {
       return "energy";
   }
   return "";
+}
+
+const char* AdviceFor(ForceOff cause) noexcept {
+  switch (cause) {
+    case ForceOff::kEmergencyStop:
+      return "release the emergency stop and start again";
+    case ForceOff::kLinkLost:
+      return "look at the cable and at the program on the device's side, then start again";
+    case ForceOff::kDeviceFault:
+      return "the device has switched its motors off: clear its fault, then start again";
+    case ForceOff::kNonFinite:
+      return "a figure was no number: check the device's calibration; the last ticks show which";
+    case ForceOff::kSpeed:
+      return "hold the handle more firmly, let the mechanism weigh less with --scale, or give its "
+             "joints viscous friction";
+    case ForceOff::kEnergy:
+      return "render less with --scale, give the joints viscous friction, hold more firmly, or "
+             "check the masses, delay and resolution that the device states";
+    default:
+      return "";
+  }
 }
 
 }  // namespace vmech

@@ -24,6 +24,8 @@ enum class ForceOff : std::uint8_t {
 };
 /// "emergency stop", ...
 const char* NameOf(ForceOff cause) noexcept;
+/// What to do about a cause that trips, "" for the others: "render less with --scale, ...".
+const char* AdviceFor(ForceOff cause) noexcept;
 
 /// Stages that changed the wrench of a tick, as bits; also the order of the chain.
 enum SafetyStage : std::uint32_t {
@@ -31,8 +33,9 @@ enum SafetyStage : std::uint32_t {
   kDamped = 1u << 1,
   kClamped = 1u << 2,
   kSlewed = 1u << 3,
+  kBraked = 1u << 4,
 };
-inline constexpr int kSafetyStages = 4;
+inline constexpr int kSafetyStages = 5;
 
 struct SafetyOptions {
   double soft_start = 0.5;  ///< ramp from nothing to the whole wrench [s], in [0, 10]
@@ -81,9 +84,11 @@ struct SafetyCounters {
 
 /// The last word on every wrench, between the tick and the device, for any device:
 ///
-///   finite? - gate (life cycle, link, e-stop, dead man) - soft start - passivity - clamp on |f|
-///   and |m| that keeps the direction - slew limit - trips on speed and energy.
+///   finite? - gate (life cycle, link, e-stop, dead man) - soft start - passivity - brake - clamp
+///   on |f| and |m| that keeps the direction - slew limit - trips on speed and energy.
 ///
+/// The brake is a damper on what the handle is faster than 0.7 of the speed that trips: something
+/// heavy that falls drags the handle along, and does not throw it.
 /// Of a device that exerts no moment the moments are dropped first. After a sample that is missing
 /// the wrench changes no faster than kCatchUp until it is again the one that is wanted; the speed
 /// of the hand is judged over the gap.
@@ -138,11 +143,13 @@ class SafetyFilter {
   // The stages that change the wrench of this tick.
   void Ramp(Screw* F, SafetyOutput* out) noexcept;
   void Damp(Screw* F, SafetyOutput* out) noexcept;
+  void Brake(Screw* F, SafetyOutput* out) const noexcept;
   void Clamp(const WrenchLimit& room, Screw* F, SafetyOutput* out) noexcept;
   void Slew(Screw* F, SafetyOutput* out) noexcept;
 
   SafetyOptions options_;
   double period_, delay_;
+  double brake_, angular_brake_;  // [N s/m], [N m s/rad]
   PassivityController passivity_;
   SafetyCounters counters_;
   ForceOff latched_ = ForceOff::kNone;
