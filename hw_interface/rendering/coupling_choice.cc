@@ -10,6 +10,7 @@
 #include "vmech/base/linear_algebra/linear_algebra.h"
 #include "vmech/dynamics/rigid_body/newton_euler.h"
 #include "vmech/hw_interface/safety/stability.h"
+#include "vmech/kinematics/loops/assembly.h"
 #include "vmech/kinematics/loops/loops.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
 
@@ -40,8 +41,8 @@ Vector6d HandleMasses(const GraspFrame& grasp, const DeviceInfo& device) {
   return D;
 }
 
-/// w_d: as fast as hold, delay and filter let a handle swing on the coupling, and no faster than the
-/// steps of its encoders allow, w^2 D <= kJerk.
+/// w_d: as fast as hold, delay and filter let a handle swing on the coupling, and no faster than
+/// the steps of its encoders allow, w^2 D <= kJerk.
 double FastestRate(const DeviceInfo& device, double smoothing) {
   const double by_delay = kPhase / (0.5 * device.period + device.delay + smoothing);
   const double step = std::max(device.linear.resolution, kLever * device.angular.resolution);
@@ -65,6 +66,45 @@ HandCoupling SoftCoupling(const DeviceInfo& device) {
   coupling.stiffness << Vector3d::Constant(stiffness), Vector3d::Constant(kLever2 * stiffness);
   coupling.damping << Vector3d::Constant(damping), Vector3d::Constant(kLever2 * damping);
   return coupling;
+}
+
+/// The free motions at q, so large that the joint that moves most turns by `angle`, or slides by
+/// that part of the mechanism's length.
+MatrixXd Excursions(const KinematicTree& tree, const VectorXd& q, double angle) {
+  TreeWorkspace<double> ws(tree);
+  ForwardKinematics(tree, q.data(), &ws);
+  MatrixXd N = AllowedMotions(tree, &ws);
+  for (const TreeNode& node : tree.nodes) {
+    if (node.v >= 0 && node.motion == NodeMotion::kPrismatic) N.row(node.v) /= tree.length;
+  }
+  const Eigen::RowVectorXd largest = N.cwiseAbs().colwise().maxCoeff();
+  for (const TreeNode& node : tree.nodes) {
+    if (node.v >= 0 && node.motion == NodeMotion::kPrismatic) N.row(node.v) *= tree.length;
+  }
+  return N * (angle / largest.array().max(1e-12)).matrix().asDiagonal();
+}
+
+/// lambda for the coupling: that of the pose, but no more than four times the least of the poses
+/// about it. At a dead centre of the hand it has no bound, and says nothing of the motion.
+double RatioAlongThePath(const KinematicTree& tree, const GraspFrame& grasp, const VectorXd& q,
+                         const DeviceInfo& device) {
+  constexpr double kSteps[] = {-0.3, -0.1, 0.1, 0.3};  // [rad]
+  constexpr double kAtMost = 4;
+  const double here = InertiaRatio(tree, grasp, q, device);
+  if (device.linear.mass == 0) return 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (const double step : kSteps) {
+    const MatrixXd excursions = Excursions(tree, q, step);
+    for (Eigen::Index k = 0; k < excursions.cols(); ++k) {
+      VectorXd there = q;
+      MoveCoordinates(tree, excursions.col(k), &there);
+      if (!Assemble(tree, AssemblyOptions::Nearby(), &there).closed) continue;
+      const double ratio = InertiaRatio(tree, grasp, there, device);
+      if (ratio > 0) least = std::min(least, ratio);
+    }
+  }
+  if (here > 0) return std::min(here, kAtMost * least);
+  return std::isfinite(least) ? kAtMost * least : 0;
 }
 
 /// Force on a hand that stays where the mechanism is, once that hangs still on a soft spring.
@@ -109,7 +149,7 @@ SafetyOptions CouplingChoice::Safety() const {
 CouplingChoice ChooseCoupling(const KinematicTree& tree, const GraspFrame& grasp, const VectorXd& q,
                               const DeviceInfo& device, double smoothing) {
   CouplingChoice choice;
-  choice.inertia_ratio = InertiaRatio(tree, grasp, q, device);
+  choice.inertia_ratio = RatioAlongThePath(tree, grasp, q, device);
   if (choice.inertia_ratio == 0) {
     choice.coupling = SoftCoupling(device);
     WithoutMoments(device, &choice.coupling);

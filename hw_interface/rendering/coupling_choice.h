@@ -29,7 +29,8 @@ struct CouplingChoice {
 ///
 ///   K = D w^2,  B = 2 z D w,  w = min(1.2 w_v lambda^1/2, w_d),  z = 0.4,  D the handle's masses,
 ///
-/// lambda the largest of N' M N s = lambda (J N)' D J N s, N the free motions. Where lambda asks
+/// lambda the largest of N' M N s = lambda (J N)' D J N s, N the free motions; near a dead centre
+/// of the hand, where it has no bound, four times the least of the poses about. Where lambda asks
 /// for more than w_d, or the weight for more than half of the device's peak force, forces are
 /// scaled down. A device that states no masses gets a soft spring, watched by the passivity
 /// controller. @throws std::invalid_argument if the mechanism has no freedom at q.

@@ -146,6 +146,30 @@ TEST(HardPlaces, AFirmHandShakesTheFourBarAtTwoHertz) {
   }
 }
 
+/// At the dead centre the hand sees no inertia at all; beside it, nearly a wall.
+TEST(HardPlaces, AHandAtADeadCentreGetsTheCouplingOfThePosesAbout) {
+  Mechanism mechanism = PistonInHand();
+  for (Joint& joint : mechanism.joints) {
+    if (joint.type == JointType::kRevolute) joint.start = {0};
+  }
+  Session session(mechanism, Vector3d(0.03, 0.03, 0));
+  const double beside = Session(PistonInHand(), Vector3d::Zero()).choice.coupling.stiffness[0];
+  EXPECT_GE(session.choice.coupling.stiffness[0], beside);
+  CoupledTick tick = session.Coupled();
+  const RunSummary summary = session.Run(&tick, session.choice.Safety());
+  EXPECT_EQ(summary.status, RunStatus::kFinished) << summary.FullReport();
+}
+
+/// Two heavy links below the one that is held swing as they like.
+TEST(HardPlaces, LooseHeavyLinksDoNotTrip) {
+  Mechanism mechanism = Example("redundant-arm");
+  mechanism.grasps = {{"first", 1, Posed{}, GraspKind::kRigid}};
+  Session session(mechanism, Vector3d(0.05, 0.05, 0), 1);
+  CoupledTick tick = session.Coupled();
+  const RunSummary summary = session.Run(&tick, session.choice.Safety());
+  EXPECT_EQ(summary.status, RunStatus::kFinished) << summary.FullReport();
+}
+
 TEST(HardPlaces, HandBeyondTheReachIsPulledWithNoMoreThanTheDeviceCan) {
   Mechanism arm = Example("two-link-arm");
   arm.gravity_W.setZero();
