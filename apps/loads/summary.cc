@@ -45,9 +45,7 @@ Json MotionSummary(const LoadStudy& study, const LoadStudyResult& loads, int j) 
 Json TransmissionSummary(const LoadStudy& study, const LoadStudyResult& loads) {
   const std::optional<TransmissionAngle> transmission = FindTransmissionAngle(study, loads);
   if (!transmission) return nullptr;
-  const auto name = [&](int link) {
-    return study.mechanism.links[static_cast<size_t>(link)].name;
-  };
+  const auto name = [&](int link) { return study.mechanism.links[static_cast<size_t>(link)].name; };
   return {{"input", name(transmission->input)},
           {"coupler", name(transmission->coupler)},
           {"output", name(transmission->output)},

@@ -31,9 +31,9 @@ class VirtualCoupling {
   /// The hand and the grasp frame, in the world.
   void Stretch(const Frame& X_WG, const MovingFrame& hand) noexcept;
 
-  /// What the device has room for now, beside the largest force and moment of the coupling itself. A
-  /// spring that slips does not pull harder because there is more room, until it has stopped: its
-  /// energy would grow by what nobody pays.
+  /// What the device can exert at this moment, beside the largest force and moment of the coupling
+  /// itself. A spring that slips does not pull harder because there is more room, until it has
+  /// stopped: its energy would grow by what nobody pays.
   void Within(const WrenchLimit& room) noexcept { room_ = room; }
 
   const Screw& root_gain() const noexcept { return root_gain_; }  ///< (B + T K)^1/2
