@@ -127,6 +127,9 @@ TickOutput Runner::StepTick(IoStatus io, TickRecord* record) noexcept VMECH_NONB
     registered_ = true;
   }
   MovingFrame observed;
+  const Matrix3d& R_WD = registration_.X_WD.R;
+  const Vector6d F_Ho_D = safety_.WrenchCharged(state_);
+  const Vector6d charged = Stacked<double>(R_WD * F_Ho_D.head<3>(), R_WD * F_Ho_D.tail<3>());
   if (fresh_) {
     Observe();
     GraspOrLetGo();
@@ -136,6 +139,7 @@ TickOutput Runner::StepTick(IoStatus io, TickRecord* record) noexcept VMECH_NONB
   input.fresh = fresh_;
   input.elapsed = static_cast<double>(state_.sequence - last_sequence_) * period_;
   input.state = &state_;
+  input.charged_F_Ho_W = &charged;
   if (observer_) {
     registration_.TakeHandInWorld(observer_->hand_D(), &observed);
     input.observed = &observed;

@@ -145,10 +145,8 @@ void SafetyFilter::Observe(const SafetyInput& input) noexcept {
   if (has_pose_) {
     const Screw dX = HandError(X_last_, X);
     const double elapsed = static_cast<double>(state.sequence - last_sequence_) * period_;
-    // This tick's command is still to come. Somebody else carries what the soft start withholds.
-    const std::uint64_t command = CommandAtWork(state, counters_.ticks - 1);
-    Screw wrench = ExertedBy(command, state);
-    if (command > 0) wrench += withheld_[command % kMemory];
+    // This tick's command is still to come.
+    const Screw wrench = ChargedFor(CommandAtWork(state, counters_.ticks - 1), state);
     passivity_.Observe(wrench, dX, elapsed, input.stored_energy);
     constexpr double kSmoothing = 5e-3;  // [s]: single encoder steps do not trip
     smooth_V_ += std::min(1.0, elapsed / kSmoothing) * ((1 / elapsed) * dX - smooth_V_);
@@ -163,6 +161,17 @@ void SafetyFilter::Observe(const SafetyInput& input) noexcept {
 
 Vector6d SafetyFilter::WrenchAtWork(const MasterState& state) const noexcept {
   return Vector6Of(ExertedBy(CommandAtWork(state, counters_.ticks), state));
+}
+
+Vector6d SafetyFilter::WrenchCharged(const MasterState& state) const noexcept {
+  return Vector6Of(ChargedFor(CommandAtWork(state, counters_.ticks), state));
+}
+
+/// Somebody else carries what the soft start withholds.
+Screw SafetyFilter::ChargedFor(std::uint64_t command, const MasterState& state) const noexcept {
+  Screw wrench = ExertedBy(command, state);
+  if (command > 0) wrench += withheld_[command % kMemory];
+  return wrench;
 }
 
 /// Its sequence; 0 if unknown. `latest` is that of the last command sent.
