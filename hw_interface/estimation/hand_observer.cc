@@ -13,7 +13,6 @@
 namespace vmech {
 namespace {
 
-constexpr double kLighter = 1.0;                   // c
 constexpr double kMobilityTime = 0.2;              // [s]
 constexpr double kLosing = 0.01, kGaining = 0.05;  // [s]: of trust
 constexpr double kSmoothing = 2;                   // [periods]: of differences
@@ -44,6 +43,7 @@ std::array<double, 3> GainsFor(double bandwidth, double period) {
 
 void HandObserverOptions::Validate() const {
   if (bandwidth != 0) CheckRange("HandObserverOptions", "bandwidth", bandwidth, 30, 1e3);
+  CheckRange("HandObserverOptions", "lighter", lighter, 0, 4);
 }
 
 bool HandObserver::Suits(const DeviceInfo& info) {
@@ -52,6 +52,7 @@ bool HandObserver::Suits(const DeviceInfo& info) {
 
 HandObserver::HandObserver(const HandObserverOptions& options, const DeviceInfo& info)
     : period_(info.period),
+      lighter_(options.lighter),
       arm_(Checked(info).arm),
       lower_(JointArray::Constant(-kNoStop)),
       upper_(JointArray::Constant(kNoStop)),
@@ -129,7 +130,7 @@ void HandObserver::FindMobility(const MasterState& state) noexcept {
   factor_.solveInPlace(yielding_);
   const Matrix6d Y = arm_.J().lazyProduct(yielding_);
   const bool sound = factor_.info() == Eigen::Success && Y.allFinite();
-  for (int i = 0; i < 6; ++i) mobility_[i] = sound ? kLighter * ScrewOf(Y.col(i)) : Screw{};
+  for (int i = 0; i < 6; ++i) mobility_[i] = sound ? lighter_ * ScrewOf(Y.col(i)) : Screw{};
 }
 
 }  // namespace vmech

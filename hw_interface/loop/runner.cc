@@ -132,6 +132,9 @@ TickOutput Runner::StepTick(IoStatus io, TickRecord* record) noexcept VMECH_NONB
     registered_ = true;
   }
   MovingFrame observed;
+  const Matrix3d& R_WD = registration_.X_WD.R;
+  const Vector6d F_Ho_D = safety_.WrenchCharged(state_);
+  const Vector6d charged = Stacked<double>(R_WD * F_Ho_D.head<3>(), R_WD * F_Ho_D.tail<3>());
   if (fresh_) {
     if (gap_ > options_.safety.hold_periods) TakeUpAgain();
     Observe();
@@ -144,6 +147,7 @@ TickOutput Runner::StepTick(IoStatus io, TickRecord* record) noexcept VMECH_NONB
   input.state = &state_;
   if (torques_) input.room = torques_->room();
   input.debt = safety_.Debt();
+  input.charged_F_Ho_W = &charged;
   if (observer_) {
     registration_.TakeHandInWorld(HandNow(), &observed);
     input.observed = &observed;

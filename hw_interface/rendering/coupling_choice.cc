@@ -9,7 +9,6 @@
 
 #include "vmech/base/linear_algebra/linear_algebra.h"
 #include "vmech/dynamics/rigid_body/newton_euler.h"
-#include "vmech/hw_interface/safety/stability.h"
 #include "vmech/kinematics/loops/assembly.h"
 #include "vmech/kinematics/loops/loops.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
@@ -31,14 +30,6 @@ MatrixXd AllowedMotions(const KinematicTree& tree, TreeWorkspace<double>* ws) {
   LoopErrors(tree, ws);
   LoopJacobian(tree, ws);
   return FindNullSpace(LoopRowScale(tree).asDiagonal() * DenseLoopJacobian(tree, *ws), kRank).basis;
-}
-
-/// The handle's masses on the diagonal; without rotations for a point grasp.
-Vector6d HandleMasses(const GraspFrame& grasp, const DeviceInfo& device) {
-  const double turning = grasp.kind == GraspKind::kRigid ? device.angular.mass : 0;
-  Vector6d D;
-  D << Vector3d::Constant(device.linear.mass), Vector3d::Constant(turning);
-  return D;
 }
 
 /// w_d: as fast as hold, delay and filter let a handle swing on the coupling, and no faster than
@@ -174,6 +165,13 @@ CouplingChoice ChooseCoupling(const KinematicTree& tree, const GraspFrame& grasp
   return choice;
 }
 
+Vector6d HandleMasses(const GraspFrame& grasp, const DeviceInfo& device) {
+  const double turning = grasp.kind == GraspKind::kRigid ? device.angular.mass : 0;
+  Vector6d D;
+  D << Vector3d::Constant(device.linear.mass), Vector3d::Constant(turning);
+  return D;
+}
+
 double InertiaRatio(const KinematicTree& tree, const GraspFrame& grasp, const VectorXd& q,
                     const DeviceInfo& device) {
   TreeWorkspace<double> ws(tree);
@@ -199,36 +197,6 @@ double InertiaRatio(const KinematicTree& tree, const GraspFrame& grasp, const Ve
     if (value > kMoves * eigen.maxCoeff()) least = std::min(least, value);
   }
   return least > 0 ? 1 / least : 0;
-}
-
-double StableInertiaShare(const KinematicTree& tree, const GraspFrame& grasp, const VectorXd& q,
-                          const DeviceInfo& device) {
-  const double ratio = InertiaRatio(tree, grasp, q, device);
-  return ratio > 0 ? std::min(1.0, 0.4 / ratio) : 1;
-}
-
-ContactLaw ContactLawFor(const DeviceInfo& device, double stiffness) {
-  constexpr double kNoForce = 1000;  // [N/m]
-  constexpr double kLever = 0.05;    // [m], of a hand
-  ContactLaw law;
-  if (!device.takes_wrench && !device.takes_torque) {
-    law.stiffness.head<3>().setConstant(kNoForce);
-    law.stiffness.tail<3>().setConstant(kNoForce * kLever * kLever);
-    return law;
-  }
-  RenderingGains wanted;
-  wanted.stiffness.setConstant(std::numeric_limits<double>::max());
-  law.stiffness = LimitedGains(device, wanted).stiffness;
-  // A device that does not state its damping: soft, and watched by the passivity controller.
-  if (device.linear.damping == 0) law.stiffness.head<3>().setConstant(kNoForce / 4);
-  if (device.angular.damping == 0) {
-    law.stiffness.tail<3>() = kLever * kLever * law.stiffness.head<3>();
-  }
-  if (stiffness > 0 && stiffness < law.stiffness[0]) {
-    law.stiffness.tail<3>() *= stiffness / law.stiffness[0];
-    law.stiffness.head<3>().setConstant(stiffness);
-  }
-  return law;
 }
 
 }  // namespace vmech

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "vmech/dynamics/in_hand/coupled_dynamics.h"
-#include "vmech/hw_interface/rendering/contact_law.h"
 #include "vmech/hw_interface/safety/safety_filter.h"
 
 namespace vmech {
@@ -41,16 +40,7 @@ CouplingChoice ChooseCoupling(const KinematicTree& tree, const GraspFrame& grasp
 double InertiaRatio(const KinematicTree& tree, const GraspFrame& grasp, const VectorXd& q,
                     const DeviceInfo& device);
 
-/// The share of a mechanism's inertia that a device can render from measured accelerations, as the
-/// paper does, in (0, 1]: min(1, 0.4 / lambda). Delay in the acceleration turns rendered inertia
-/// against the device's own; at equality it swings up (RenderingBounds::stable_inertia). 1 for a
-/// device that states no masses.
-double StableInertiaShare(const KinematicTree& tree, const GraspFrame& grasp, const VectorXd& q,
-                          const DeviceInfo& device);
-
-/// Stiffness and law of the constraint for a device: its own bounds, or the wanted stiffness if
-/// that is lower. A device without force gets a stiffness that only weighs positions against
-/// rotations.
-ContactLaw ContactLawFor(const DeviceInfo& device, double stiffness);
+/// The handle's masses [kg, kg m^2] on the diagonal; without rotations for a point grasp.
+Vector6d HandleMasses(const GraspFrame& grasp, const DeviceInfo& device);
 
 }  // namespace vmech

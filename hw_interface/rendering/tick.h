@@ -41,6 +41,9 @@ struct TickInput {
   /// The hand in a fresh sample as an observer knows it (HandObserver); null: nobody observes it.
   /// For ticks that take it (UsesObservedHand) alone.
   const MovingFrame* observed = nullptr;
+  /// What the hand was charged for until this sample, about Ho, axes of W (SafetyFilter): less than
+  /// what the tick wanted where that was more than the device can exert. Null: all of it.
+  const Vector6d* charged_F_Ho_W = nullptr;
 };
 
 enum class TickStatus : std::uint8_t {

@@ -180,15 +180,24 @@ void SafetyFilter::Account(const SafetyInput& input, const Screw& dX, double ela
     passivity_.Observe({}, {}, elapsed, input.stored_energy);
     return;
   }
-  // This tick's command is still to come. Somebody else carries what the soft start withholds.
-  const std::uint64_t command = CommandAtWork(*input.state, counters_.ticks - 1);
-  Screw wrench = ExertedBy(command, *input.state);
-  if (command > 0) wrench += withheld_[command % kMemory];
+  // This tick's command is still to come.
+  const Screw wrench = ChargedFor(CommandAtWork(*input.state, counters_.ticks - 1), *input.state);
   passivity_.Observe(wrench, dX, elapsed, input.stored_energy);
 }
 
 Vector6d SafetyFilter::WrenchAtWork(const MasterState& state) const noexcept {
   return Vector6Of(ExertedBy(CommandAtWork(state, counters_.ticks), state));
+}
+
+Vector6d SafetyFilter::WrenchCharged(const MasterState& state) const noexcept {
+  return Vector6Of(ChargedFor(CommandAtWork(state, counters_.ticks), state));
+}
+
+/// Somebody else carries what the soft start withholds.
+Screw SafetyFilter::ChargedFor(std::uint64_t command, const MasterState& state) const noexcept {
+  Screw wrench = ExertedBy(command, state);
+  if (command > 0) wrench += withheld_[command % kMemory];
+  return wrench;
 }
 
 /// Its sequence; 0 if unknown. `latest` is that of the last command sent.

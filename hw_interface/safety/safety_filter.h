@@ -117,6 +117,8 @@ class SafetyFilter {
   /// What the device exerted during the period before its latest sample: sensed, or told by its
   /// echo, or else sent a delay ago. Before Apply of that sample.
   Vector6d WrenchAtWork(const MasterState& state) const noexcept;
+  /// The same with what the soft start withheld of it, where that is carried: what is charged.
+  Vector6d WrenchCharged(const MasterState& state) const noexcept;
 
   ForceOff latched() const noexcept { return latched_; }
   const SafetyCounters& counters() const noexcept { return counters_; }
@@ -139,6 +141,7 @@ class SafetyFilter {
   void Account(const SafetyInput& input, const Screw& dX, double elapsed) noexcept;
   std::uint64_t CommandAtWork(const MasterState& state, std::uint64_t latest) const noexcept;
   Screw ExertedBy(std::uint64_t command, const MasterState& state) const noexcept;
+  Screw ChargedFor(std::uint64_t command, const MasterState& state) const noexcept;
   ForceOff Trip() const noexcept;
   // The stages that change the wrench of this tick.
   void Ramp(Screw* F, SafetyOutput* out) noexcept;

@@ -6,7 +6,7 @@
 #include "support/examples.h"
 #include "vmech/hw_interface/masters/simulated_master.h"
 #include "vmech/hw_interface/rendering/coupling_choice.h"
-#include "vmech/hw_interface/safety/stability.h"
+#include "vmech/hw_interface/rendering/paper_choice.h"
 
 namespace vmech {
 namespace {
@@ -32,11 +32,9 @@ std::unique_ptr<Tick> MakeTick(const KinematicTree& tree, int grasp, const Devic
                                Architecture architecture, SafetyOptions* safety) {
   const VectorXd q = ClosedStart(tree);
   if (architecture == Architecture::kPaper) {
-    RenderingGains wanted;
-    wanted.stiffness.setConstant(1e9);
-    MechanismTickOptions options;
-    options.law.stiffness = LimitedGains(device, wanted).stiffness;
-    return std::make_unique<MechanismTick>(tree, grasp, q, device, options);
+    const PaperChoice choice = ChoosePaper({}, tree, grasp, q, device);
+    *safety = choice.safety;
+    return std::make_unique<MechanismTick>(tree, grasp, q, device, choice.tick);
   }
   CoupledTickOptions options;
   const CouplingChoice choice =
