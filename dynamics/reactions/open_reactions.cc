@@ -53,24 +53,21 @@ MatrixXd FactorQR(const MatrixXd& A, MatrixXd* Q = nullptr) {
 OpenReactions::OpenReactions(const KinematicTree& tree, const CoordinatePartition& partition,
                              const TreeWorkspace<double>& ws)
     : last_loop_(LastLoops(tree, partition)) {
-  const VectorXd row_scale = LoopRowScale(tree), velocity_scale = VelocityScale(tree);
   has_full_rank_ = Find(last_loop_, -1) == std::ssize(last_loop_);
   double longest_row = 0;  // by its sum, as the columns
   VectorXd columns = VectorXd::Zero(std::ssize(last_loop_));
   Rows handed;
   for (size_t l = 0; l < tree.loops.size(); ++l) {
-    const Loop& loop = tree.loops[l];
-    Rows own{{}, MatrixXd(loop.rows, std::ssize(loop.columns))};
-    for (size_t k = 0; k < loop.columns.size(); ++k) {
-      const int v = loop.columns[k].v;
-      if (partition.dependent_slot[v] < 0) continue;
-      own.A.col(std::ssize(own.slots)) =
-          velocity_scale[v] *
-          row_scale.segment(loop.row, loop.rows)
-              .cwiseProduct(ws.loop_columns[ws.first_column[l] + k].head(loop.rows));
-      own.slots.push_back(partition.dependent_slot[v]);
+    const RowBlock block = DimensionlessLoopRows(tree, ws, l);
+    Rows own;
+    std::vector<int> kept;
+    for (size_t k = 0; k < block.columns.size(); ++k) {
+      const int slot = partition.dependent_slot[block.columns[k]];
+      if (slot < 0) continue;
+      own.slots.push_back(slot);
+      kept.push_back(static_cast<int>(k));
     }
-    own.A.conservativeResize(Eigen::NoChange, std::ssize(own.slots));
+    own.A = block.A(Eigen::all, kept);
     columns(own.slots) += own.A.cwiseAbs().colwise().sum().transpose();
     longest_row = std::max(longest_row, own.A.cwiseAbs().rowwise().sum().maxCoeff());
     handed = TakeTurn(handed, own, l);
