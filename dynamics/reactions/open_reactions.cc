@@ -144,10 +144,13 @@ VectorXd OpenReactions::LargestOpen(const std::vector<Block>& blocks) const {
 /// R' y = b.
 VectorXd OpenReactions::SolveTransposed(VectorXd b) const {
   for (const Turn& turn : turns_) {
-    const VectorXd right = b(turn.eliminated);
-    const VectorXd y = turn.R.triangularView<Eigen::Upper>().transpose().solve(right);
-    b(turn.eliminated) = y;
-    b(turn.later) -= turn.R_later.transpose() * y;
+    const std::vector<int>&own = turn.eliminated, &later = turn.later;
+    for (size_t j = 0; j < own.size(); ++j) {
+      double& y = b[own[j]];
+      for (size_t i = 0; i < j; ++i) y -= turn.R(i, j) * b[own[i]];
+      y /= turn.R(j, j);
+      for (size_t k = 0; k < later.size(); ++k) b[later[k]] -= turn.R_later(j, k) * y;
+    }
   }
   return b;
 }
@@ -155,9 +158,13 @@ VectorXd OpenReactions::SolveTransposed(VectorXd b) const {
 /// R x = b.
 VectorXd OpenReactions::Solve(VectorXd b) const {
   for (auto turn = turns_.rbegin(); turn != turns_.rend(); ++turn) {
-    const VectorXd right = b(turn->eliminated) - turn->R_later * b(turn->later);
-    const VectorXd x = turn->R.triangularView<Eigen::Upper>().solve(right);
-    b(turn->eliminated) = x;
+    const std::vector<int>&own = turn->eliminated, &later = turn->later;
+    for (size_t j = own.size(); j-- > 0;) {
+      double& x = b[own[j]];
+      for (size_t k = 0; k < later.size(); ++k) x -= turn->R_later(j, k) * b[later[k]];
+      for (size_t i = j + 1; i < own.size(); ++i) x -= turn->R(j, i) * b[own[i]];
+      x /= turn->R(j, j);
+    }
   }
   return b;
 }

@@ -7,6 +7,7 @@
 
 #include "support/examples.h"
 #include "vmech/base/linear_algebra/linear_algebra.h"
+#include "vmech/base/linear_algebra/normal_equations.h"
 #include "vmech/kinematics/loops/assembled_mechanism.h"
 #include "vmech/kinematics/loops/closure.h"
 #include "vmech/kinematics/loops/dimensionless_loops.h"
@@ -278,6 +279,21 @@ TEST(BlockNullSpace, IsThatOfTheWholeMatrix) {
   EXPECT_EQ(M.cols(), columns - FindNullSpace(stacked, kRankTolerance).rank);
   EXPECT_LT((stacked * M).norm(), 1e-12);
   EXPECT_TRUE((M.transpose() * M).isIdentity(1e-12));
+}
+
+TEST(NormalEquations, AreSolvedWithinTheirEnvelope) {
+  int columns = 0;
+  const std::vector<RowBlock> blocks = ChainOfBlocks(20, &columns);
+  MatrixXd A = MatrixXd::Zero(60, columns);
+  for (int b = 0; b < 20; ++b) A.middleRows(3 * b, 3)(Eigen::all, blocks[b].columns) = blocks[b].A;
+  Random random(4);
+  const VectorXd e = random.Vector(60), b = random.Vector(columns);
+  const VectorXd D = random.Vector(columns).array() + 1.1;
+  const VectorXd x = SolveNormalEquations(blocks, e, D, b);
+  const VectorXd left = A.transpose() * (A * x - e) + D.cwiseProduct(x) - b;
+  EXPECT_LT(left.norm(), 1e-12);
+  EXPECT_LT(ShareOfEnvelope(columns, blocks), 0.2);
+  EXPECT_EQ(ShareOfEnvelope(5, {blocks[0]}), 1);
 }
 
 TEST(LoopNullSpace, IsThatOfTheLoopJacobian) {
