@@ -39,6 +39,8 @@ struct LoadsArguments {
   bool strict = false;  ///< warnings are errors: nothing is written
 };
 int RunLoads(const LoadsArguments& arguments);
+/// Of a study with a simulation; the default folder is "<study>-simulate".
+int RunSimulate(const LoadsArguments& arguments);
 
 struct CompareArguments {
   std::filesystem::path suite;

@@ -46,6 +46,13 @@ constexpr const char* kLoadsHelp =
     "  summary.json   the figures that matter, for programs\n"
     "  report.html    all of it to read and hand on";
 
+constexpr const char* kSimulateHelp =
+    "Lets a mechanism move by its own dynamics, as the block `simulation` of a study says, with\n"
+    "springs, friction, motors and limits, and writes what `vmech loads` writes, and:\n"
+    "  energies.csv   where the energy is, what was supplied and dissipated, what is in error\n"
+    "  events.csv     impacts at limits, contacts that stick and slip, coordinates reached\n"
+    "Ctrl-C ends it with the results as far as it went, and exit code 3.";
+
 constexpr const char* kCompareHelp =
     "Solves every problem of a suite by every solver, on all processors, and writes what came of "
     "it:\n"
@@ -278,14 +285,14 @@ void AddCheck(CLI::App* app, vmech::CheckArguments* check) {
   command->add_flag("--json", check->json, "print JSON instead of text");
 }
 
-void AddLoads(CLI::App* app, vmech::LoadsArguments* loads) {
-  CLI::App* command = app->add_subcommand("loads", kLoadsHelp);
+void AddStudyOptions(CLI::App* command, const char* results, vmech::LoadsArguments* loads) {
   command->add_option("STUDY", loads->study, "study file, YAML or JSON")
       ->required()
       ->type_name("FILE");
   command
-      ->add_option("--out", loads->out,
-                   "folder for the results (default: <study>-loads in this folder)")
+      ->add_option(
+          "--out", loads->out,
+          fmt::format("folder for the results (default: <study>-{} in this folder)", results))
       ->type_name("DIR");
   command->add_option("--threads", loads->threads, "threads; 0 for all processors")
       ->check(CLI::Range(0, 64, "0..64"))
@@ -316,7 +323,7 @@ void AddCompare(CLI::App* app, vmech::CompareArguments* compare) {
 /// Everything that the command line can ask for.
 struct Arguments {
   vmech::CheckArguments check;
-  vmech::LoadsArguments loads;
+  vmech::LoadsArguments loads, simulated;
   vmech::CompareArguments compare;
   vmech::IkArguments ik;
   vmech::HapticArguments haptic;
@@ -332,7 +339,9 @@ constexpr const char* kCompletionHelp =
 
 void AddCommands(CLI::App* app, Arguments* arguments) {
   AddCheck(app, &arguments->check);
-  AddLoads(app, &arguments->loads);
+  AddStudyOptions(app->add_subcommand("loads", kLoadsHelp), "loads", &arguments->loads);
+  AddStudyOptions(app->add_subcommand("simulate", kSimulateHelp), "simulate",
+                  &arguments->simulated);
   AddCompare(app, &arguments->compare);
   app->add_subcommand("import",
                       "Makes a mechanism file of a CAD assembly, SDFormat or URDF; see `vmech "
@@ -357,6 +366,7 @@ int PrintCompletion() {
 int RunCommand(const CLI::App& app, const Arguments& arguments) {
   if (app.got_subcommand("check")) return RunCheck(arguments.check);
   if (app.got_subcommand("loads")) return RunLoads(arguments.loads);
+  if (app.got_subcommand("simulate")) return RunSimulate(arguments.simulated);
   if (app.got_subcommand("ik")) return RunIk(arguments.ik);
   if (app.got_subcommand("haptic")) return RunHaptic(arguments.haptic);
   if (app.got_subcommand("replay")) return RunReplay(arguments.replay);

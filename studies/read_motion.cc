@@ -63,28 +63,6 @@ int ReadFreedom(const Node& node, JointType type) {
   return 0;
 }
 
-/// The joint and the freedom that a drive moves.
-bool ReadDriven(const Node& node, const Mechanism& mechanism, JointDrive* drive) {
-  drive->joint = FindPart(node["joint"], "joint", mechanism.joints);
-  if (drive->joint < 0) return false;
-  const int freedoms = FreedomsOf(mechanism.joints[drive->joint].type);
-  if (freedoms == 0 || mechanism.joints[drive->joint].type == JointType::kSpherical) {
-    node["joint"].Error("this joint has no freedom that a motor can drive");
-    return false;
-  }
-  drive->freedom = ReadFreedom(node, mechanism.joints[drive->joint].type);
-  return true;
-}
-
-/// The speed of a drive from `rpm` or `speed` [rad/s] or [m/s].
-double ReadSpeed(const Node& node, bool rotates, const Units& units) {
-  const Node rpm = node["rpm"], speed = node["speed"];
-  if (rpm && speed) speed.KeyError("give either 'rpm' or 'speed'");
-  if (rpm && !rotates) rpm.KeyError("this freedom is a translation; give its 'speed'");
-  if (rpm) return rpm.Number(1) * 2 * std::numbers::pi / 60;
-  return speed.Number(1) * (rotates ? units.angular_velocity : units.velocity);
-}
-
 /// How long a drive at constant speed runs: so many turns, or a duration.
 PoseTimes ReadRun(const Node& node, bool rotates, double speed, const Units& units) {
   const Node turns = node["turns"], duration = node["duration"], steps = node["steps"];
@@ -217,28 +195,12 @@ void ReadHandDrive(const Node& node, const Units& units, const std::filesystem::
     hand.stiffness[i] = stiffness[i] * (i < 3 ? units.stiffness : units.rotational_stiffness);
     if (!(stiffness[i] > 0)) node["stiffness"].Error("must be greater than zero");
   }
-  const CsvTable table = ReadTable(node["table"], folder);
-  if (hand.grasp < 0 || table.rows() == 0) return;
-  const std::vector<std::string> position{"t", "x", "y", "z"}, direction{"qw", "qx", "qy", "qz"};
-  const bool point = study->mechanism.grasps[hand.grasp].kind == GraspKind::kPoint;
-  std::vector<std::string> required = position;
-  if (!point || table.Find("qw"))
-    required.insert(required.end(), direction.begin(), direction.end());
-  if (!CheckColumns(node["table"], table, required, {})) return;
-  std::vector<Posed> poses;
-  for (size_t i = 0; i < table.rows(); ++i) {
-    poses.push_back(HandPose(node["table"], table, units, i));
-  }
-  const std::vector<double> times = Scaled(*table.Find("t"), units.time);
-  try {
-    hand.law = HandLaw::Table(times, poses);
-  } catch (const std::invalid_argument& defect) {
-    ReportInTable(node["table"], table, -1, defect.what());
-    return;
-  }
-  const Posed &first = poses.front(), &last = poses.back();
-  const bool closed = first.p.isApprox(last.p, 1e-6) && first.R.isApprox(last.R, 1e-6);
-  PoseTimes run = ReadTableRun(node, times, closed);
+  if (hand.grasp < 0) return;
+  const std::optional<HandTable> table =
+      ReadHandTable(node["table"], units, folder, study->mechanism.grasps[hand.grasp].kind);
+  if (!table) return;
+  hand.law = table->law;
+  PoseTimes run = ReadTableRun(node, table->times, table->closed);
   study->times = std::move(run.times);
   study->cycle = run.cycle;
   study->hand = std::move(hand);
@@ -292,6 +254,55 @@ std::vector<Node> DrivesOf(const Node& motion) {
 }
 
 }  // namespace
+
+bool ReadDriven(const Node& node, const Mechanism& mechanism, JointDrive* drive) {
+  drive->joint = FindPart(node["joint"], "joint", mechanism.joints);
+  if (drive->joint < 0) return false;
+  const int freedoms = FreedomsOf(mechanism.joints[drive->joint].type);
+  if (freedoms == 0 || mechanism.joints[drive->joint].type == JointType::kSpherical) {
+    node["joint"].Error("this joint has no freedom that a motor can drive");
+    return false;
+  }
+  drive->freedom = ReadFreedom(node, mechanism.joints[drive->joint].type);
+  return true;
+}
+
+double ReadSpeed(const Node& node, bool rotates, const Units& units) {
+  const Node rpm = node["rpm"], speed = node["speed"];
+  if (rpm && speed) speed.KeyError("give either 'rpm' or 'speed'");
+  if (rpm && !rotates) rpm.KeyError("this freedom is a translation; give its 'speed'");
+  if (rpm) return rpm.Number(1) * 2 * std::numbers::pi / 60;
+  return speed.Number(1) * (rotates ? units.angular_velocity : units.velocity);
+}
+
+std::optional<HandTable> ReadHandTable(const Node& node, const Units& units,
+                                       const std::filesystem::path& folder, GraspKind kind) {
+  const CsvTable table = ReadTable(node, folder);
+  if (table.rows() == 0) return std::nullopt;
+  std::vector<std::string> required{"t", "x", "y", "z"};
+  if (kind == GraspKind::kRigid || table.Find("qw")) {
+    required.insert(required.end(), {"qw", "qx", "qy", "qz"});
+  }
+  if (!CheckColumns(node, table, required, {})) return std::nullopt;
+  std::vector<Posed> poses;
+  for (size_t i = 0; i < table.rows(); ++i) poses.push_back(HandPose(node, table, units, i));
+  HandTable hand;
+  hand.times = Scaled(*table.Find("t"), units.time);
+  try {
+    hand.law = HandLaw::Table(hand.times, poses);
+  } catch (const std::invalid_argument& defect) {
+    ReportInTable(node, table, -1, defect.what());
+    return std::nullopt;
+  }
+  const Posed &first = poses.front(), &last = poses.back();
+  hand.closed = first.p.isApprox(last.p, 1e-6) && first.R.isApprox(last.R, 1e-6);
+  return hand;
+}
+
+void ReadFollowingDrive(const Node& node, const Units& units, const std::filesystem::path& folder,
+                        LoadStudy* study) {
+  ReadJointDrive(node, units, folder, false, study);
+}
 
 bool IsRotation(JointType type, int freedom) {
   return FreedomsOfType(type).rotates[freedom];

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string_view>
+#include <vector>
 
 #include "vmech/dynamics/loads/load_study.h"
 #include "vmech/mechanisms/files/document.h"
@@ -40,6 +42,27 @@ bool IsRotation(JointType type, int freedom);
 
 /// The value of `motion` for a structure that cannot move: one pose, no drive.
 constexpr std::string_view kStill = "still";
+
+/// The joint and the freedom that a node names by `joint` and `freedom`. False if it has none that
+/// a motor can drive, which is reported.
+bool ReadDriven(const Node& node, const Mechanism& mechanism, JointDrive* drive);
+
+/// A speed from `rpm` or `speed` [rad/s] or [m/s].
+double ReadSpeed(const Node& node, bool rotates, const Units& units);
+
+/// A drive that does not set the poses, added to those of a study.
+void ReadFollowingDrive(const Node& node, const Units& units, const std::filesystem::path& folder,
+                        LoadStudy* study);
+
+/// A table of the hand's poses.
+struct HandTable {
+  HandLaw law;
+  std::vector<double> times;  ///< [s]
+  bool closed = false;        ///< it ends where it began
+};
+/// Nothing if the table cannot be used, which is reported.
+std::optional<HandTable> ReadHandTable(const Node& node, const Units& units,
+                                       const std::filesystem::path& folder, GraspKind kind);
 
 /// Reads the block `motion` into the drives, or the hand, and the times of a study.
 void ReadMotion(const Node& node, const Units& units, const std::filesystem::path& folder,

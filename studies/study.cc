@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "vmech/dynamics/loads/load_result.h"
 #include "vmech/dynamics/loads/open_components.h"
 #include "vmech/dynamics/loads/run_load_study.h"
+#include "vmech/dynamics/simulation/simulate.h"
 
 namespace vmech {
 namespace {
@@ -53,11 +56,45 @@ LoadCertainty CertaintyOfLoads(const JointCertainty& certainty) {
   return certain ? LoadCertainty::kCertain : LoadCertainty::kDependsOnRule;
 }
 
+/// The request with what the study says of it elsewhere.
+Simulation SimulationOf(const StudyFile& file) {
+  Simulation simulation = file.simulation->simulation;
+  simulation.mechanism = file.study.mechanism;
+  simulation.drives = file.study.drives;
+  simulation.external = file.study.external;
+  simulation.times = file.study.times;
+  simulation.rule = file.study.rule;
+  simulation.norm_length = file.study.norm_length;
+  simulation.units = file.study.units;
+  return simulation;
+}
+
+void RunSimulation(const StudyFile& file, const LoadStudyOptions& options, StudyOutcome* outcome) {
+  SimulationOptions how = file.simulation->options;
+  if (options.progress) {
+    how.progress = [&](double time) {
+      const std::vector<double>& times = file.study.times;
+      const auto reached = std::upper_bound(times.begin(), times.end(), time);
+      return options.progress(static_cast<size_t>(reached - times.begin()));
+    };
+  }
+  SimulationResult result = Simulate(SimulationOf(file), how);
+  outcome->loads = std::move(result.loads);
+  outcome->loads.notes.insert(outcome->loads.notes.end(), result.notes.begin(), result.notes.end());
+  outcome->loads.warnings.insert(outcome->loads.warnings.end(), result.warnings.begin(),
+                                 result.warnings.end());
+  outcome->simulation = std::move(result);
+}
+
 }  // namespace
 
 StudyOutcome RunStudy(const StudyFile& file, const LoadStudyOptions& options) {
   StudyOutcome outcome;
-  outcome.loads = RunLoadStudy(file.study, options);
+  if (file.simulation) {
+    RunSimulation(file, options, &outcome);
+  } else {
+    outcome.loads = RunLoadStudy(file.study, options);
+  }
   outcome.loads.notes.insert(outcome.loads.notes.begin(), file.notes.begin(), file.notes.end());
   outcome.warnings = outcome.loads.warnings;
   for (const BearingRequest& request : file.bearings) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,8 @@
 #include "vmech/dynamics/bearings/joint_bearings.h"
 #include "vmech/dynamics/loads/load_result.h"
 #include "vmech/dynamics/loads/load_study.h"
+#include "vmech/dynamics/simulation/simulation.h"
+#include "vmech/dynamics/simulation/simulation_result.h"
 
 namespace vmech {
 
@@ -16,6 +19,13 @@ struct BearingRequest {
   int joint = -1;
   Arrangement arrangement;
   BearingRequirements requirements;
+};
+
+/// What a study simulates instead of following a motion. The mechanism, drives, external loads,
+/// times and the rule are those of StudyFile::study.
+struct SimulationRequest {
+  Simulation simulation;
+  SimulationOptions options;
 };
 
 /// A file that a study was read from.
@@ -32,6 +42,7 @@ struct StudyFile {
   std::filesystem::path mechanism_path;
   std::string motion;  ///< the motion in words: "main at 1500 rpm, 2 turns"
   LoadStudy study;
+  std::optional<SimulationRequest> simulation;  ///< instead of a motion
   std::vector<BearingRequest> bearings;
   std::vector<Bearing> catalogue;       ///< the built-in one unless the file names another
   std::vector<std::string> notes = {};  ///< what the file says in a manner that is no longer used
@@ -47,12 +58,15 @@ struct BearingOutcome {
 
 struct StudyOutcome {
   LoadStudyResult loads;
-  std::vector<BearingOutcome> bearings;  ///< in the order of StudyFile::bearings
-  std::vector<std::string> warnings;     ///< of loads and bearings together
+  std::optional<SimulationResult> simulation;  ///< of a study that has one; without its loads
+  std::vector<BearingOutcome> bearings;        ///< in the order of StudyFile::bearings
+  std::vector<std::string> warnings;           ///< of loads and bearings together
 };
 
-/// Runs the loads and chooses the bearings.
-/// @throws as RunLoadStudy; std::invalid_argument for bearings at a joint that cannot have them.
+/// Runs the loads, or the simulation, and chooses the bearings. Of the options a simulation takes
+/// the progress, in poses.
+/// @throws as RunLoadStudy and Simulate; std::invalid_argument for bearings at a joint that cannot
+/// have them.
 StudyOutcome RunStudy(const StudyFile& file, const LoadStudyOptions& options);
 
 }  // namespace vmech

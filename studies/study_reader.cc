@@ -12,6 +12,7 @@
 #include "vmech/mechanisms/files/reader.h"
 #include "vmech/mechanisms/freedoms.h"
 #include "vmech/studies/read_motion.h"
+#include "vmech/studies/read_simulation.h"
 #include "vmech/studies/sha256.h"
 
 namespace vmech {
@@ -229,7 +230,11 @@ ReactionRule ReadRule(const Node& node) {
 void ReadReferences(const Node& root, const std::filesystem::path& folder, StudyFile* file) {
   const Units units = ReadUnits(root["units"]);
   LoadStudy& loads = file->study;
-  ReadMotion(root["motion"], units, folder, &loads);
+  if (root["simulation"]) {
+    ReadSimulation(root["simulation"], units, folder, file);
+  } else {
+    ReadMotion(root["motion"], units, folder, &loads);
+  }
   for (const Node& entry : root["external"].List()) {
     loads.external.push_back(ReadExternalLoad(entry, units, folder, loads));
   }
@@ -272,6 +277,13 @@ void CheckVersion(const Node& version) {
   version.Error(fmt::format("this is format {}; only {} can be read", Quoted(text), kStudyFormat));
 }
 
+/// Either a motion that is given, or one that is simulated.
+void CheckMotion(const Node& root) {
+  const Node motion = root["motion"], simulation = root["simulation"];
+  if (!motion && !simulation) root.KeyError("the key 'motion' is missing, or 'simulation'");
+  if (motion && simulation) simulation.KeyError("give either a motion or a simulation");
+}
+
 }  // namespace
 
 StudyFile ReadStudy(const std::filesystem::path& path) {
@@ -283,10 +295,11 @@ StudyFile ParseStudy(std::string_view text, const std::filesystem::path& path) {
   const Node root = document.root();
   StudyFile file;
   file.path = path;
-  if (root.CheckKeys({"vmech_study", "mechanism", "motion"},
-                     {"name", "description", "units", "external", "rule", "norm_length", "bearings",
-                      "catalogue", "limits"})) {
+  if (root.CheckKeys({"vmech_study", "mechanism"},
+                     {"motion", "simulation", "name", "description", "units", "external", "rule",
+                      "norm_length", "bearings", "catalogue", "limits"})) {
     CheckVersion(root["vmech_study"]);
+    CheckMotion(root);
     file.name = root["name"].Text(path.stem().string());
     file.description = root["description"].Text();
     file.study.rule = ReadRule(root["rule"]);
@@ -297,9 +310,10 @@ StudyFile ParseStudy(std::string_view text, const std::filesystem::path& path) {
     if (ReadNamedMechanism(root["mechanism"], folder, &file)) ReadReferences(root, folder, &file);
   }
   document.ThrowErrors();
-  file.motion = MotionInWords(root["motion"], file.study);
+  file.motion = file.simulation ? SimulationInWords(root["simulation"], file)
+                                : MotionInWords(root["motion"], file.study);
   file.inputs = InputsOf(text, path, document);
-  file.notes = NotesOnFreedoms(root["motion"], file.study);
+  if (!file.simulation) file.notes = NotesOnFreedoms(root["motion"], file.study);
   return file;
 }
 

@@ -36,6 +36,10 @@ const KindOfResult& Describe(ResultKind kind) {
        {"loads.csv", "motion.csv", "joints.csv", "certainty.csv", "bearings.csv", "summary.json",
         "report.html"},
        nullptr},
+      {"vmech simulate",
+       {"energies.csv", "events.csv", "loads.csv", "motion.csv", "joints.csv", "certainty.csv",
+        "bearings.csv", "summary.json", "report.html"},
+       nullptr},
       {"vmech compare", {"results.csv", "summary.json", "report.html"}, "rows.jsonl"},
   };
   return kKinds[static_cast<int>(kind)];
@@ -167,14 +171,21 @@ void ResultFolder::LockTarget() {
 /// Nothing is replaced that is not a result of the same kind.
 void ResultFolder::RefuseOthers() const {
   const KindOfResult& mine = Describe(kind_);
-  const bool loads = kind_ == ResultKind::kLoads;
-  const char* sign = loads ? Describe(ResultKind::kComparison).journal
-                           : Describe(ResultKind::kLoads).files[0].c_str();
-  if (Exists(target_ / sign)) {
+  for (const ResultKind other :
+       {ResultKind::kLoads, ResultKind::kSimulation, ResultKind::kComparison}) {
+    if (other == kind_) continue;
+    const KindOfResult& kind = Describe(other);
+    // A simulation's set holds one of loads.
+    if (kind_ == ResultKind::kSimulation && other == ResultKind::kLoads &&
+        Exists(target_ / mine.files[0])) {
+      continue;
+    }
+    const std::string sign = kind.journal != nullptr ? kind.journal : kind.files[0];
+    if (!Exists(target_ / sign)) continue;
     throw FileErrors(folder_.string(),
                      fmt::format("holds a result of `{}` ({}), which must not be mixed with one of "
                                  "`{}`; give another folder with --out",
-                                 loads ? "vmech compare" : "vmech loads", sign, mine.command));
+                                 kind.command, sign, mine.command));
   }
   if (Exists(target_ / mine.files[0])) return;
   for (const std::string& name : mine.files) {

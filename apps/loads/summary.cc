@@ -64,6 +64,29 @@ Json GraspSummary(const LoadStudy& study, const LoadStudyResult& loads) {
   return grasps;
 }
 
+Json SimulationSummary(const SimulationResult& simulation) {
+  const SimulationStatistics& s = simulation.statistics;
+  double error = 0;
+  for (const EnergySample& energy : simulation.energies) {
+    error = std::max(error, std::abs(energy.error));
+  }
+  return {{"status", NameOf(simulation.status)},
+          {"message", simulation.message},
+          {"end", simulation.times.empty() ? 0 : simulation.times.back()},
+          {"events", simulation.events.size()},
+          {"largest_energy_error", error},
+          {"method", NameOf(s.method)},
+          {"steps", s.steps},
+          {"evaluations", s.evaluations},
+          {"error_test_failures", s.error_test_failures},
+          {"nonlinear_iterations", s.nonlinear_iterations},
+          {"projections", s.projections},
+          {"restarts", s.restarts},
+          {"largest_drift", s.largest_drift},
+          {"largest_closure", s.largest_closure},
+          {"seconds", s.seconds}};
+}
+
 Json JointSummary(const StudyFile& file, const LoadStudyResult& loads, size_t j) {
   double radial = 0, axial = 0, tilting = 0;
   for (const PoseLoads& pose : loads.poses) {
@@ -154,6 +177,7 @@ std::string SummaryJson(const StudyFile& file, const StudyOutcome& outcome) {
   for (size_t j = 0; j < file.study.mechanism.joints.size(); ++j) {
     json["joints"].push_back(JointSummary(file, loads, j));
   }
+  if (outcome.simulation) json["simulation"] = SimulationSummary(*outcome.simulation);
   json["transmission_angle"] = TransmissionSummary(file.study, loads);
   json["grasps"] = GraspSummary(file.study, loads);
   json["bearings"] = Json::array();

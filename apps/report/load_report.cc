@@ -15,6 +15,7 @@
 #include "vmech/apps/report/joint_section.h"
 #include "vmech/apps/report/kinematics_section.h"
 #include "vmech/apps/report/motion_scene.h"
+#include "vmech/apps/report/simulation_section.h"
 #include "vmech/apps/view/view_page.h"
 #include "vmech/dynamics/loads/load_result.h"
 #include "vmech/mechanisms/freedoms.h"
@@ -327,6 +328,7 @@ std::string RenderLoadReport(const StudyFile& file, const StudyOutcome& outcome,
   Markup body = Header(report, cycle);
   body += html::Heading(2, "The mechanism in motion") + ViewPlace() +
           PrintedMechanism(report.study, report.result);
+  if (outcome.simulation) body += SimulationSection(file, *outcome.simulation);
   body += JointOverview(report.study, report.result, cycle);
   body += CertaintySection(report.study, report.result);
   body += BearingSections(file, outcome);
