@@ -1,6 +1,9 @@
 #pragma once
 
+#include <vector>
+
 #include "vmech/base/pose.h"
+#include "vmech/kinematics/tree/tree_workspace.h"
 
 namespace vmech {
 
@@ -12,5 +15,17 @@ struct JointLoad {
   Vector3<T> rate;
   Vector3<T> acceleration;  ///< of the coordinates, the slopes of `rate`
 };
+
+/// Coordinates of the joints in the tree from q [nq]; of a spherical joint the rotation vector.
+template <typename T>
+void TreeJointPositions(const KinematicTree& tree, const T* q, std::vector<JointLoad<T>>* joints);
+/// Rates of every joint, cut ones included, from v [nv]. Needs V.
+template <typename T>
+void JointRates(const KinematicTree& tree, const TreeWorkspace<T>& ws, const T* v,
+                std::vector<JointLoad<T>>* joints);
+/// The slopes of JointRates from v' [nv]. Needs V and A.
+template <typename T>
+void JointAccelerations(const KinematicTree& tree, const TreeWorkspace<T>& ws, const T* vdot,
+                        std::vector<JointLoad<T>>* joints);
 
 }  // namespace vmech

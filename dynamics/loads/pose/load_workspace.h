@@ -39,6 +39,9 @@ struct LoadWorkspace {
   std::vector<Vector3<T>> sliding;     ///< per joint: its rates, zero where it rests
   std::vector<Vector3<T>> along;       ///< per joint: springs and friction along its freedoms
   std::vector<ScrewT<T>> external;     ///< the external loads
+  /// Per joint: what motors, stops and friction that was found before exert along its freedoms,
+  /// beside springs and dampers. Null: nothing.
+  const Vector3<T>* exerted = nullptr;
   VectorX q, v, vdot;
   VectorX tau;       ///< needed along each freedom
   VectorX passive;   ///< supplied by springs and friction

@@ -42,6 +42,7 @@ void PassiveForces(const LoadModel& model, LoadWorkspace<T>* ws) {
     for (int k = 0; k < static_cast<int>(joint.passive.size()); ++k) {
       ws->along[j][k] += SpringForce(joint.passive[k], load.position[k], load.rate[k]);
     }
+    if (ws->exerted != nullptr) ws->along[j] += ws->exerted[j];
   }
   SpreadPassive(model, ws);
 }

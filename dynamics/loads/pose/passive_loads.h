@@ -4,8 +4,8 @@
 
 namespace vmech {
 
-/// Springs, and the friction of what slides, under the joint wrenches of ws->loads. Needs
-/// ws->sliding; writes ws->along, ws->passive and ws->cut_passive.
+/// Springs, the friction of what slides, and ws->exerted, under the joint wrenches of ws->loads.
+/// Needs ws->sliding; writes ws->along, ws->passive and ws->cut_passive.
 template <typename T>
 void PassiveForces(const LoadModel& model, LoadWorkspace<T>* ws);
 

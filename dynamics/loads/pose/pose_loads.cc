@@ -21,20 +21,6 @@
 namespace vmech {
 namespace {
 
-/// The rotation vector of a unit quaternion (w, x, y, z).
-template <typename T>
-Vector3<T> RotationVector(const T* wxyz) {
-  using std::atan2;
-  using std::sqrt;
-  const T sign = Select(wxyz[0] < T(0), T(-1), T(1));  // the shorter way round
-  const Vector3<T> xyz = sign * Vector3<T>(wxyz[1], wxyz[2], wxyz[3]);
-  const T w = sign * wxyz[0], sine2 = xyz.squaredNorm();
-  constexpr double kSmall = 1e-16;  // squared: there the series has the same digits
-  const T sine = sqrt(Select(sine2 < T(kSmall), T(1), sine2));
-  const T per_sine = Select(sine2 < T(kSmall), T(2.0), 2.0 * atan2(sine, w) / sine);
-  return per_sine * xyz;
-}
-
 template <typename T>
 constexpr bool kSinglePose = std::is_same_v<T, double>;
 
@@ -114,35 +100,6 @@ void CloseAccelerations(const LoadModel& model, const Motion& motion, size_t pos
   }
 }
 
-/// Rates of every joint, cut ones included.
-template <typename T>
-void JointRates(const LoadModel& model, LoadWorkspace<T>* ws) {
-  for (const TreeNode& node : model.tree.nodes) {
-    Vector3<T>* rate = node.v < 0 ? nullptr : &ws->loads[node.joint].rate;
-    for (int k = 0; k < VelocitiesOf(node.motion); ++k) {
-      (*rate)[node.freedom + k] = ws->v[node.v + k];
-    }
-  }
-  for (size_t l = 0; l < model.tree.loops.size(); ++l) {
-    ws->loads[model.tree.loops[l].joint].rate =
-        CutJointRates(model.tree, ws->tree, static_cast<int>(l));
-  }
-}
-
-/// The slopes of JointRates.
-template <typename T>
-void JointAccelerations(const LoadModel& model, LoadWorkspace<T>* ws) {
-  for (const TreeNode& node : model.tree.nodes) {
-    for (int k = 0; k < VelocitiesOf(node.motion); ++k) {
-      ws->loads[node.joint].acceleration[node.freedom + k] = ws->vdot[node.v + k];
-    }
-  }
-  for (size_t l = 0; l < model.tree.loops.size(); ++l) {
-    ws->loads[model.tree.loops[l].joint].acceleration =
-        CutJointAccelerations(model.tree, ws->tree, static_cast<int>(l));
-  }
-}
-
 /// How the mechanism would move if the drives that stand still began to move one by one: the
 /// motions that friction at rest can hold. Uses the velocities as scratch.
 void FindCreep(const LoadModel& model, const Motion& motion, size_t pose,
@@ -155,25 +112,17 @@ void FindCreep(const LoadModel& model, const Motion& motion, size_t pose,
     ws->v[standing[k]] = CreepSpeed(model, standing[k]);
     CompleteVelocities(model, ws);
     MoveLinks(model, ws);
-    JointRates(model, ws);
+    JointRates(model.tree, ws->tree, ws->v.data(), &ws->loads);
     ws->creep.col(static_cast<Eigen::Index>(k)) = ws->v;
     for (const JointLoad<double>& joint : ws->loads) ws->creep_rates.push_back(joint.rate);
   }
 }
 
-/// Coordinates of every joint, cut ones included.
+/// Coordinates of every joint; those of cut joints as the motion has unwrapped them.
 template <typename T>
-void JointPositions(const LoadModel& model, const Motion& motion, size_t pose,
+void PositionJoints(const LoadModel& model, const Motion& motion, size_t pose,
                     LoadWorkspace<T>* ws) {
-  for (const TreeNode& node : model.tree.nodes) {
-    if (node.v < 0) continue;
-    JointLoad<T>& joint = ws->loads[node.joint];
-    if (node.motion == NodeMotion::kSpherical) {
-      joint.position = RotationVector<T>(ws->q.data() + node.q);
-    } else {
-      joint.position[node.freedom] = ws->q[node.q];
-    }
-  }
+  TreeJointPositions(model.tree, ws->q.data(), &ws->loads);
   const size_t loops = model.tree.loops.size();
   for (size_t l = 0; l < loops; ++l) {
     JointLoad<T>& joint = ws->loads[model.tree.loops[l].joint];
@@ -185,24 +134,6 @@ void JointPositions(const LoadModel& model, const Motion& motion, size_t pose,
       const Vector3<T> here = CutJointCoordinates(model.tree.loops[l], ws->tree.loops[l]);
       for (int k = 0; k < 3; ++k) joint.position[k].slope = here[k].slope;
     }
-  }
-}
-
-template <typename T>
-void GatherApplied(const LoadModel& model, LoadWorkspace<T>* ws) {
-  for (ScrewT<T>& w : ws->applied) w = {};
-  const auto apply = [&](int node, const ScrewT<T>& W) {
-    if (node >= 0) ws->applied[node] += W;
-  };
-  for (size_t i = 0; i < model.external.size(); ++i) {
-    apply(model.tree.NodeOfLink(model.external[i].link), ws->external[i]);
-  }
-  if (!model.has_passive) return;
-  for (size_t l = 0; l < model.tree.loops.size(); ++l) {
-    const JointPlacement& place = model.tree.placements[model.tree.loops[l].joint];
-    const ScrewT<T> W = WrenchFrom(ws->tree.loops[l].F, ws->cut_passive[l]);
-    apply(place.second_node, W);
-    apply(place.first_node, -1.0 * W);
   }
 }
 
@@ -230,27 +161,6 @@ void LoadTree(const LoadModel& model, LoadWorkspace<T>* ws) {
   NewtonEuler(model.tree, ws->inertias, ws->applied.data(), &ws->tree, ws->tau.data());
 }
 
-/// One pass from the friction under the joint wrenches of ws->loads to new joint wrenches there.
-template <typename T>
-void EquilibriumPass(const LoadModel& model, LoadWorkspace<T>* ws) {
-  if (model.has_passive) PassiveForces(model, ws);
-  LoadTree(model, ws);
-  if constexpr (kSinglePose<T>) {
-    if (!ws->resting.empty()) {
-      HoldByFriction(model, ws);
-      SpreadPassive(model, ws);
-      LoadTree(model, ws);
-    }
-    if (model.idle > 0) SettleIdleFreedoms(model, ws);
-    if (model.hand && model.rule != ReactionRule::kPaperJoint) ApplyHandWrench(model, ws);
-    if (model.rule == ReactionRule::kPaperJoint) SolvePaperJoint(model, ws);
-  }
-  if (model.rule != ReactionRule::kPaperJoint) SolveReactions(model, ws);
-  for (size_t j = 0; j < ws->joints.size(); ++j) {
-    ws->loads[j].W_F = WrenchIn(ws->joints[j].F, ws->joints[j].W);
-  }
-}
-
 template <typename T>
 void FindEquilibrium(const LoadModel& model, LoadWorkspace<T>* ws) {
   for (JointLoad<T>& load : ws->loads) load.W_F = Wrench<T>{};
@@ -275,6 +185,44 @@ void DriveForces(const LoadModel& model, LoadWorkspace<T>* ws) {
 
 }  // namespace
 
+template <typename T>
+void GatherApplied(const LoadModel& model, LoadWorkspace<T>* ws) {
+  for (ScrewT<T>& w : ws->applied) w = {};
+  const auto apply = [&](int node, const ScrewT<T>& W) {
+    if (node >= 0) ws->applied[node] += W;
+  };
+  for (size_t i = 0; i < model.external.size(); ++i) {
+    apply(model.tree.NodeOfLink(model.external[i].link), ws->external[i]);
+  }
+  if (!model.has_passive) return;
+  for (size_t l = 0; l < model.tree.loops.size(); ++l) {
+    const JointPlacement& place = model.tree.placements[model.tree.loops[l].joint];
+    const ScrewT<T> W = WrenchFrom(ws->tree.loops[l].F, ws->cut_passive[l]);
+    apply(place.second_node, W);
+    apply(place.first_node, -1.0 * W);
+  }
+}
+
+template <typename T>
+void EquilibriumPass(const LoadModel& model, LoadWorkspace<T>* ws) {
+  if (model.has_passive) PassiveForces(model, ws);
+  LoadTree(model, ws);
+  if constexpr (kSinglePose<T>) {
+    if (!ws->resting.empty()) {
+      HoldByFriction(model, ws);
+      SpreadPassive(model, ws);
+      LoadTree(model, ws);
+    }
+    if (model.idle > 0) SettleIdleFreedoms(model, ws);
+    if (model.hand && model.rule != ReactionRule::kPaperJoint) ApplyHandWrench(model, ws);
+    if (model.rule == ReactionRule::kPaperJoint) SolvePaperJoint(model, ws);
+  }
+  if (model.rule != ReactionRule::kPaperJoint) SolveReactions(model, ws);
+  for (size_t j = 0; j < ws->joints.size(); ++j) {
+    ws->loads[j].W_F = WrenchIn(ws->joints[j].F, ws->joints[j].W);
+  }
+}
+
 bool RunsInLanes(const LoadModel& model) {
   return !model.hand && model.idle == 0 && !model.has_load_friction &&
          model.rule != ReactionRule::kPaperJoint;
@@ -298,8 +246,8 @@ bool EvaluatePoseLoads(const LoadModel& model, const Motion& motion, size_t pose
   }
   GatherDrives(model, motion, pose, ws);
   CloseVelocities(model, motion, pose, ws);
-  JointRates(model, ws);
-  JointPositions(model, motion, pose, ws);
+  JointRates(model.tree, ws->tree, ws->v.data(), &ws->loads);
+  PositionJoints(model, motion, pose, ws);
   if (model.has_dry_friction) FindContacts(model, motion, ws);
   CloseAccelerations(model, motion, pose, ws);
   EvaluateExternalLoads(model, motion, pose, ws);
@@ -308,14 +256,16 @@ bool EvaluatePoseLoads(const LoadModel& model, const Motion& motion, size_t pose
   JointFrames(model.tree, ws->tree, &ws->joints);
   ws->reactions.Factor(ws->tree, ws->joints);
   FindEquilibrium(model, ws);
-  JointAccelerations(model, ws);
+  JointAccelerations(model.tree, ws->tree, ws->vdot.data(), &ws->loads);
   DriveForces(model, ws);
   EvaluatePower(model, ws);
   return true;
 }
 
 // NOLINTBEGIN(bugprone-macro-parentheses): T is a type
-#define VMECH_INSTANTIATE(T) \
+#define VMECH_INSTANTIATE(T)                                             \
+  template void GatherApplied<T>(const LoadModel&, LoadWorkspace<T>*);   \
+  template void EquilibriumPass<T>(const LoadModel&, LoadWorkspace<T>*); \
   template bool EvaluatePoseLoads<T>(const LoadModel&, const Motion&, size_t, LoadWorkspace<T>*);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)

@@ -19,4 +19,14 @@ template <typename T>
 [[nodiscard]] bool EvaluatePoseLoads(const LoadModel& model, const Motion& motion, size_t pose,
                                      LoadWorkspace<T>* ws);
 
+/// What acts on each node from outside: external loads, and springs and friction of cut joints.
+/// Writes ws->applied.
+template <typename T>
+void GatherApplied(const LoadModel& model, LoadWorkspace<T>* ws);
+
+/// One pass from the friction under the joint wrenches of ws->loads to new joint wrenches there, at
+/// the velocities and accelerations of ws->tree. Needs ws->reactions factored.
+template <typename T>
+void EquilibriumPass(const LoadModel& model, LoadWorkspace<T>* ws);
+
 }  // namespace vmech

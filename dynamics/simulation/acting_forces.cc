@@ -1,0 +1,194 @@
+#include "vmech/dynamics/simulation/acting_forces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "vmech/base/screw_algebra.h"
+#include "vmech/dynamics/loads/pose/external_loads.h"
+#include "vmech/dynamics/loads/pose/passive_loads.h"
+#include "vmech/dynamics/loads/pose/pose_loads.h"
+#include "vmech/kinematics/loops/cut_joint.h"
+#include "vmech/kinematics/tree/forward_kinematics.h"
+#include "vmech/kinematics/tree/grasp_frame.h"
+#include "vmech/mechanisms/freedoms.h"
+
+namespace vmech {
+namespace {
+
+HandSample HandAt(const GraspSpring& spring, double time) {
+  return spring.hand ? spring.hand(time) : spring.law.At(time);
+}
+
+/// Is a freedom of a cut joint an angle of which only the part within a turn is seen?
+bool CountsTurns(JointType type, int freedom) {
+  if (type == JointType::kSpherical || type == JointType::kScrew) return false;
+  return freedom < FreedomsOf(type) && FreedomsOfType(type).rotates[freedom];
+}
+
+MovingFrame MovingFrameOf(const HandSample& hand) {
+  return {FrameOf(hand.X_WH), ScrewOf(hand.V_WH)};
+}
+
+}  // namespace
+
+void ContinueCutPositions(const KinematicTree& tree, const TreeWorkspace<double>& ws,
+                          std::vector<Vector3d>* positions) {
+  constexpr double kTurn = 2 * std::numbers::pi;
+  for (size_t l = 0; l < tree.loops.size(); ++l) {
+    const Vector3d now = CutJointCoordinates(tree.loops[l], ws.loops[l]);
+    Vector3d& position = (*positions)[l];
+    for (int k = 0; k < 3; ++k) {
+      const bool turns = CountsTurns(tree.loops[l].type, k);
+      position[k] = now[k] + (turns ? kTurn * std::round((position[k] - now[k]) / kTurn) : 0);
+    }
+  }
+}
+
+ActingForces::ActingForces(const Simulation& simulation, LoadModel* model)
+    : simulation_(simulation),
+      model_(*model),
+      exerted_(model->tree.mechanism.joints.size(), Vector3d::Zero()),
+      motor_forces_(simulation.motors.size(), 0.0),
+      cut_positions_(model->tree.loops.size(), Vector3d::Zero()) {
+  if (simulation.hand) {
+    const Grasp& grasp = simulation.mechanism.grasps[simulation.hand->grasp];
+    coupling_.emplace_back(simulation.hand->coupling, grasp.kind, 0.0);
+  }
+  for (size_t l = 0; l < cut_positions_.size(); ++l) {
+    const Joint& joint = model->tree.mechanism.joints[model->tree.loops[l].joint];
+    if (joint.type == JointType::kSpherical) continue;
+    std::copy(joint.start.begin(), joint.start.end(), cut_positions_[l].data());
+  }
+}
+
+void ActingForces::Remember(const ConstrainedMotion& motion) {
+  ContinueCutPositions(model_.tree, motion.ws().tree, &cut_positions_);
+}
+
+void ActingForces::FindJoints(ConstrainedMotion* motion) {
+  LoadWorkspace<double>& ws = motion->ws();
+  TreeJointPositions(model_.tree, ws.q.data(), &ws.loads);
+  JointRates(model_.tree, ws.tree, ws.v.data(), &ws.loads);
+  for (size_t l = 0; l < cut_positions_.size(); ++l) {
+    ws.loads[model_.tree.loops[l].joint].position = cut_positions_[l];
+  }
+}
+
+double ActingForces::TableArgument(const ExternalLoad& load, double time,
+                                   const ConstrainedMotion& motion) const {
+  if (load.over == ExternalLoad::Over::kTime) return time;
+  if (load.over == ExternalLoad::Over::kConstant) return 0;
+  const FreedomId& at = *simulation_.table_coordinate;
+  return motion.ws().loads[at.joint].position[at.freedom];
+}
+
+void ActingForces::ApplyExternal(double time, ConstrainedMotion* motion) {
+  for (size_t i = 0; i < simulation_.external.size(); ++i) {
+    const ExternalLoad& load = simulation_.external[i];
+    model_.external[i].wrenches[0] = WrenchAt(load, TableArgument(load, time, *motion));
+  }
+  if (simulation_.hand) ApplyHand(time, *motion);
+  EvaluateExternalLoads(model_, none_, 0, &motion->ws());
+}
+
+void ActingForces::ApplyHand(double time, const ConstrainedMotion& motion) {
+  const GraspFrame grasp = GraspFrameOf(model_.tree, simulation_.hand->grasp);
+  const TreeWorkspace<double>& ws = motion.ws().tree;
+  const Posed X_WG = PoseInWorld(ws, grasp.node, grasp.X_BG);
+  coupling_[0].Stretch(FrameOf(X_WG), MovingFrameOf(HandAt(*simulation_.hand, time)));
+  coupling_[0].Pull(ScrewOf(GraspTwist(ws, grasp.node, grasp.X_BG)));
+  model_.external.back().wrenches[0] = hand();
+}
+
+void ActingForces::RunMotors(double time, const ConstrainedMotion& motion) {
+  for (Vector3d& exerted : exerted_) exerted.setZero();
+  for (size_t i = 0; i < motor_forces_.size(); ++i) {
+    const JointMotor& motor = simulation_.motors[i];
+    const JointLoad<double>& joint = motion.ws().loads[motor.at.joint];
+    double force = 0;
+    if (motor.law == JointMotor::Law::kForce) {
+      force = motor.force.At(time);
+    } else {
+      const MotionSample wanted = motor.wanted.At(time);
+      force = motor.stiffness * (wanted.position - joint.position[motor.at.freedom]) +
+              motor.damping * (wanted.velocity - joint.rate[motor.at.freedom]);
+    }
+    motor_forces_[i] = std::clamp(force, -motor.max_force, motor.max_force);
+    exerted_[motor.at.joint][motor.at.freedom] += motor_forces_[i];
+  }
+}
+
+void ActingForces::Evaluate(double time, ConstrainedMotion* motion) {
+  LoadWorkspace<double>& ws = motion->ws();
+  const bool over_coordinate = simulation_.table_coordinate.has_value();
+  if (model_.has_passive || over_coordinate) FindJoints(motion);
+  if (!model_.external.empty()) ApplyExternal(time, motion);
+  if (model_.has_passive) {
+    RunMotors(time, *motion);
+    ws.exerted = exerted_.data();
+    PassiveForces(model_, &ws);
+  }
+  GatherApplied(model_, &ws);
+}
+
+Wrenchd ActingForces::hand() const {
+  if (coupling_.empty()) return {};
+  return {Vector3Of(coupling_[0].w().linear), Vector3Of(coupling_[0].w().angular)};
+}
+
+double ActingForces::SuppliedPower(const ConstrainedMotion& motion) const {
+  const LoadWorkspace<double>& ws = motion.ws();
+  double power = 0;
+  for (size_t i = 0; i < model_.external.size(); ++i) {
+    const int node = model_.tree.NodeOfLink(model_.external[i].link);
+    if (node >= 0) power += Power(ws.external[i], ws.tree.at(node).V);
+  }
+  for (size_t i = 0; i < motor_forces_.size(); ++i) {
+    const FreedomId& at = simulation_.motors[i].at;
+    power += motor_forces_[i] * ws.loads[at.joint].rate[at.freedom];
+  }
+  return power;
+}
+
+double ActingForces::LostPower(const ConstrainedMotion& motion) const {
+  if (!model_.has_passive) return 0;
+  const LoadWorkspace<double>& ws = motion.ws();
+  double power = 0;
+  for (size_t j = 0; j < ws.loads.size(); ++j) {
+    const Joint& joint = model_.tree.mechanism.joints[j];
+    const JointLoad<double>& load = ws.loads[j];
+    for (size_t k = 0; k < joint.passive.size(); ++k) {
+      const int i = static_cast<int>(k);
+      const Passive& passive = joint.passive[k];
+      const double spring = -passive.stiffness * (load.position[i] - passive.rest);
+      power -= (ws.along[j][i] - spring - exerted_[j][i]) * load.rate[i];
+    }
+  }
+  return power;
+}
+
+double ActingForces::SpringEnergy(const ConstrainedMotion& motion) const {
+  double energy = 0;
+  for (size_t j = 0; model_.has_passive && j < exerted_.size(); ++j) {
+    const Joint& joint = model_.tree.mechanism.joints[j];
+    for (size_t k = 0; k < joint.passive.size(); ++k) {
+      const double length =
+          motion.ws().loads[j].position[static_cast<int>(k)] - joint.passive[k].rest;
+      energy += 0.5 * joint.passive[k].stiffness * length * length;
+    }
+  }
+  return energy;
+}
+
+Motion ActingForces::PoseOf(double time, const ConstrainedMotion& motion) const {
+  const LoadWorkspace<double>& ws = motion.ws();
+  Motion pose;
+  pose.times = {time};
+  pose.coordinates.assign(ws.q.data(), ws.q.data() + ws.q.size());
+  for (const int v : model_.partition.driven) pose.drives.push_back({0, ws.v[v], ws.vdot[v]});
+  pose.cut_positions = cut_positions_;
+  return pose;
+}
+
+}  // namespace vmech

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <vector>
+
+#include "vmech/dynamics/in_hand/virtual_coupling.h"
+#include "vmech/dynamics/loads/pose/load_model.h"
+#include "vmech/dynamics/loads/pose/study_motion.h"
+#include "vmech/dynamics/simulation/constrained_motion.h"
+#include "vmech/dynamics/simulation/simulation.h"
+
+namespace vmech {
+
+/// What acts on a mechanism that is simulated, beside what is held: springs, dampers and motors
+/// along the freedoms of joints, external wrenches, the coupling of a hand. Nothing allocates after
+/// construction, unless the hand's callback does.
+class ActingForces {
+ public:
+  /// Keeps references. `model` has an external load for each of the simulation's, and one more for
+  /// the hand's coupling, all of them constant: they become what acts at the time.
+  ActingForces(const Simulation& simulation, LoadModel* model);
+
+  /// Angles of cut joints continue from those that they have in `motion`.
+  void Remember(const ConstrainedMotion& motion);
+
+  /// The same from another one's.
+  void ContinueFrom(const ActingForces& other) { cut_positions_ = other.cut_positions_; }
+
+  /// Writes ws().passive and ws().applied of `motion`, which has pose and velocities: all but dry
+  /// friction, which follows ws().sliding and the wrenches of ws().loads.
+  void Evaluate(double time, ConstrainedMotion* motion);
+
+  // Of the last Evaluate.
+  double MotorForce(size_t motor) const { return motor_forces_[motor]; }
+  Wrenchd hand() const;  ///< on the mechanism at Go, world axes
+  /// Power of motors, external wrenches and the hand; that is lost in dampers and friction [W].
+  double SuppliedPower(const ConstrainedMotion& motion) const;
+  double LostPower(const ConstrainedMotion& motion) const;
+  /// Energy of the joints' springs [J].
+  double SpringEnergy(const ConstrainedMotion& motion) const;
+  /// [joints] what motors exert along the joints' freedoms.
+  const std::vector<Vector3d>& motors() const { return exerted_; }
+
+  /// One pose as a load study knows it, for EvaluatePoseLoads.
+  Motion PoseOf(double time, const ConstrainedMotion& motion) const;
+
+ private:
+  void FindJoints(ConstrainedMotion* motion);
+  void ApplyExternal(double time, ConstrainedMotion* motion);
+  void ApplyHand(double time, const ConstrainedMotion& motion);
+  void RunMotors(double time, const ConstrainedMotion& motion);
+  double TableArgument(const ExternalLoad& load, double time,
+                       const ConstrainedMotion& motion) const;
+
+  const Simulation& simulation_;
+  LoadModel& model_;
+  std::vector<VirtualCoupling> coupling_;  ///< none or one
+  std::vector<Vector3d> exerted_;          ///< [joints]
+  std::vector<double> motor_forces_;
+  std::vector<Vector3d> cut_positions_;  ///< [loops] to continue from
+  Motion none_;                          ///< that of constant loads
+};
+
+/// The coordinates of cut joints, angles continued from those in `positions` [loops].
+void ContinueCutPositions(const KinematicTree& tree, const TreeWorkspace<double>& ws,
+                          std::vector<Vector3d>* positions);
+
+}  // namespace vmech

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <vector>
+
+#include "vmech/base/linear_algebra/envelope_ldlt.h"
+#include "vmech/dynamics/loads/pose/load_workspace.h"
+#include "vmech/dynamics/simulation/simulation.h"
+
+namespace vmech {
+
+/// The rate of one freedom of a joint as a linear function of v: an entry of it for a joint in the
+/// tree, CutJointRates for one that is cut.
+struct RateRow {
+  int v = -1;  ///< index in v, or
+  int loop = -1;
+  int freedom = 0;  ///< of that loop's cut joint
+};
+RateRow RateRowOf(const KinematicTree& tree, FreedomId freedom);
+
+/// How a tree with loops can move at one pose, and how forces accelerate it. N are the free
+/// motions, C N = 0, of the independent freedoms (`driven` of the model's partition; it has no idle
+/// ones), and some rates b_i v are held:
+///
+///   v   = N s            (N'M N) s  = N'M v_given - B' m,              B s  = held rates
+///   v'  = a + N s'       (N'M N) s' = N'(forces - h - M a) - B' m,     B s' = held slopes - b a
+///
+/// with C a + bias = 0 and B = b N. The first is the projection of given velocities in the metric
+/// of M. Redundant loop equations need no care (DependentSolver), nor do redundant rows of B.
+/// Free motions without inertia (below LoadModel::no_inertia) stand still, and so do their
+/// accelerations. Time is linear in the links and loops, times the number of freedoms. Nothing
+/// allocates but the constructor and Hold.
+class ConstrainedMotion {
+ public:
+  /// Keeps a reference to the model.
+  explicit ConstrainedMotion(const LoadModel& model);
+
+  /// Rates that are held from now on; they need not be independent.
+  void Hold(std::vector<RateRow> rows);
+  const std::vector<RateRow>& held() const noexcept { return rows_; }
+
+  /// Takes coordinates [nq], whose quaternions are brought to unit length.
+  void SetPose(const double* q) noexcept;
+  /// Of the loops there, dimensionless.
+  double closure() const noexcept;
+  /// As DependentSolver::smallest_pivot: 0 where loops lose rank.
+  double smallest_pivot() const noexcept { return ws_.dependents.smallest_pivot(); }
+
+  /// Takes v [nv] as far as loops and held rows allow: the nearest velocities in the metric of M.
+  /// `rates`: of the held rows; null: zero.
+  void SetVelocities(const double* v, const double* rates) noexcept;
+  /// Accelerations under forces [nv] along the freedoms and ws().applied on the nodes. `slopes`: of
+  /// the held rates; null: zero. Writes ws().vdot, and A of the nodes.
+  void Accelerate(const VectorXd& forces, const double* slopes) noexcept;
+  /// The forces along the held rows that this took.
+  const VectorXd& held_forces() const noexcept { return multipliers_; }
+  /// The largest force along a free motion without inertia, which was left out [N], [N m].
+  double unresisted() const noexcept { return unresisted_; }
+
+  /// Closes the loops of q [nq] to `tolerance` by the nearest step in the metric of M that leaves
+  /// the held rows alone. Leaves the pose set. Returns what is left.
+  double Close(double tolerance, double* q) noexcept;
+
+  /// N' x and M v at the pose that is set.
+  void AlongFreeMotions(const VectorXd& x, VectorXd* along) const noexcept;
+  int freedoms() const noexcept { return static_cast<int>(free_.size()); }
+  const MatrixXd& N() const noexcept { return N_; }
+  const MatrixXd& inertia() const noexcept { return A_; }  ///< N'M N [freedoms, freedoms]
+  const MatrixXd& held_motions() const noexcept { return B_; }
+
+  /// q, v, v', tree, inertias: as the functions above leave them.
+  LoadWorkspace<double>& ws() noexcept { return ws_; }
+  const LoadWorkspace<double>& ws() const noexcept { return ws_; }
+
+ private:
+  void FindInertia() noexcept;
+  void FindMovingLinks(int k) noexcept;
+  void FactorInertia() noexcept;
+  void FactorHeld() noexcept;
+  void SolveFree(VectorXd* s) noexcept;
+  double SlopeOf(const RateRow& row) const noexcept;
+
+  const LoadModel& model_;
+  const KinematicTree& tree_;
+  LoadWorkspace<double> ws_;
+  std::vector<int> free_;   ///< the independent velocities
+  VectorXd least_inertia_;  ///< of each
+  std::vector<bool> massless_;
+  MatrixXd M_, N_, MN_, A_;
+  EnvelopeLdlt<double> inertia_factors_;  ///< of A, last freedoms first
+  std::vector<RateRow> rows_;
+  MatrixXd B_, Y_;                     ///< Y = A^-1 B'
+  EnvelopeLdlt<double> held_factors_;  ///< of B A^-1 B'
+  VectorXd right_, s_, held_, multipliers_, weight_, step_, reversed_, momenta_;
+  double unresisted_ = 0;
+};
+
+/// Brings the quaternions of q [nq] to unit length.
+void NormaliseQuaternions(const KinematicTree& tree, double* q) noexcept;
+/// dq/dt [nq] at rates v [nv].
+void CoordinateRates(const KinematicTree& tree, const double* q, const double* v,
+                     double* qdot) noexcept;
+/// d [nv] with q1 = q0 (+) d, for small steps.
+void SmallStep(const KinematicTree& tree, const double* q0, const double* q1, double* d) noexcept;
+
+}  // namespace vmech

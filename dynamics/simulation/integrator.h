@@ -1,0 +1,55 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "vmech/dynamics/simulation/simulation.h"
+
+namespace vmech {
+
+/// An initial value problem, y' = f(t, y), or F(t, y, y') = 0.
+struct InitialValueProblem {
+  int size = 0;
+  /// Writes f, or F of y and y' (which is null for f). False if there is none.
+  std::function<bool(double t, const double* y, const double* slopes, double* out)> evaluate;
+  double relative_tolerance = 1e-9;
+  std::vector<double> absolute_tolerances;  ///< [size]
+  double max_step = 0;                      ///< [s]; 0: none
+  /// Of F: which unknowns have slopes in it, and which count in the error test [size].
+  std::vector<bool> differential, tested;
+};
+
+struct IntegratorCounts {
+  long steps = 0, evaluations = 0, error_test_failures = 0;
+  long nonlinear_iterations = 0, nonlinear_failures = 0, jacobians = 0;
+};
+
+/// One step after another through a problem, as large as its tolerances allow.
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+
+  /// Goes on from (t, y), with slopes y' of F. The counts go on.
+  virtual void Restart(double t, const double* y, const double* slopes) = 0;
+  /// One step, not beyond `end`. False if it fails; error() says why.
+  virtual bool Step(double end) = 0;
+  virtual double time() const = 0;      ///< at the end of the last step
+  virtual const double* y() const = 0;  ///< there
+  /// y [size] at a time within the last step.
+  virtual void At(double t, double* y) = 0;
+  virtual IntegratorCounts counts() const = 0;
+  virtual std::string error() const = 0;
+};
+
+/// By SUNDIALS: CVODES for kAdams and kBdf, IDAS for kIdas. The problem must outlive it.
+/// @throws std::runtime_error if SUNDIALS is not there, naming the package to install.
+std::unique_ptr<Integrator> MakeIntegrator(const InitialValueProblem& problem,
+                                           SimulationMethod method);
+
+/// What libvmech_cvodes.so and libvmech_idas.so hold as their variable vmech_make_integrator.
+using IntegratorMaker = std::unique_ptr<Integrator> (*)(const InitialValueProblem& problem,
+                                                        SimulationMethod method);
+
+}  // namespace vmech

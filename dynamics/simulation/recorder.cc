@@ -1,0 +1,147 @@
+#include "vmech/dynamics/simulation/recorder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "vmech/dynamics/loads/load_peaks.h"
+#include "vmech/dynamics/loads/open_components.h"
+#include "vmech/dynamics/loads/pose/pose_loads.h"
+#include "vmech/dynamics/loads/pose/store_pose_loads.h"
+#include "vmech/dynamics/reactions/certainty.h"
+#include "vmech/kinematics/loops/dimensionless_loops.h"
+
+namespace vmech {
+namespace {
+
+void Append(const VectorXd& values, std::vector<double>* to) {
+  to->insert(to->end(), values.begin(), values.end());
+}
+
+template <typename Values>
+void Cut(size_t poses, size_t room, Values* values) {
+  values->resize(values->size() / room * poses);
+}
+
+void CutTo(size_t poses, LoadArrays* arrays) {
+  const size_t room = arrays->pose_count();
+  const auto cut = [&](auto&... values) { (Cut(poses, room, &values), ...); };
+  cut(arrays->times, arrays->drives, arrays->drive_forces, arrays->wrenches, arrays->positions,
+      arrays->rates, arrays->accelerations, arrays->powers, arrays->power_errors,
+      arrays->power_error_scales, arrays->smallest_pivots, arrays->closures, arrays->links);
+}
+
+double Largest(const LoadArrays::Array& values) {
+  return values.empty() ? 0 : *std::max_element(values.begin(), values.end());
+}
+
+}  // namespace
+
+Recorder::Recorder(const PreparedSimulation& prepared, const SimulationOptions& options,
+                   EquationsOfMotion* equations, SimulationResult* result)
+    : prepared_(prepared), options_(options), equations_(*equations), result_(*result) {
+  if (!options.loads) return;
+  const Mechanism& mechanism = prepared.model.tree.mechanism;
+  LoadArrays::Shape shape;
+  shape.poses = prepared.simulation.times.size() + 1;
+  shape.drives = prepared.simulation.drives.size();
+  shape.freedoms = FreedomsOfJoints(mechanism);
+  shape.links = options.link_motions ? mechanism.links.size() : 0;
+  arrays_ = std::make_shared<LoadArrays>(shape);
+  arrays_->times.resize(shape.poses);
+  arrays_->drives.resize(shape.poses * shape.drives);
+}
+
+void Recorder::Record(double time, double* y) {
+  const KinematicTree& tree = equations_.tree();
+  double* const v = y + tree.nq;
+  const double closure = equations_.Close(time, y);
+  equations_.forces().Remember(equations_.motion());
+  equations_.Evaluate(time, y, v);
+  const LoadWorkspace<double>& ws = equations_.motion().ws();
+  std::copy(ws.v.begin(), ws.v.end(), v);
+  result_.times.push_back(time);
+  Append(ws.q, &result_.q);
+  Append(ws.v, &result_.v);
+  Append(ws.vdot, &result_.vdot);
+  result_.statistics.largest_closure = std::max(result_.statistics.largest_closure, closure);
+  if (prepared_.simulation.hand) result_.hand.push_back(equations_.forces().hand());
+  for (size_t i = 0; i < prepared_.simulation.motors.size(); ++i) {
+    result_.motor_forces.push_back(equations_.forces().MotorForce(i));
+  }
+  RecordEnergies(y);
+  if (options_.loads) RecordLoads(time);
+}
+
+void Recorder::RecordEnergies(const double* y) {
+  const double* const energies = y + equations_.tree().nq + equations_.tree().nv;
+  EnergySample sample;
+  sample.kinetic = equations_.KineticEnergyHere();
+  sample.weight = equations_.WeightEnergyHere();
+  sample.springs = equations_.forces().SpringEnergy(equations_.motion());
+  sample.supplied = energies[0];
+  sample.dissipated = energies[1];
+  if (result_.energies.empty()) first_energy_ = sample.Total();
+  sample.error = sample.Total() - first_energy_ - sample.supplied + sample.dissipated;
+  result_.energies.push_back(sample);
+}
+
+void Recorder::RecordLoads(double time) {
+  const size_t pose = result_.times.size() - 1;
+  LoadWorkspace<double>& ws = equations_.motion().ws();
+  const Motion motion = equations_.forces().PoseOf(time, equations_.motion());
+  arrays_->times[pose] = time;
+  for (size_t k = 0; k < arrays_->drive_count; ++k) {
+    arrays_->drives[pose * arrays_->drive_count + k] = prepared_.simulation.drives[k].law.At(time);
+  }
+  if (EvaluatePoseLoads(equations_.model(), motion, 0, &ws)) {
+    StorePoseLoads(equations_.model(), motion, pose, ws, arrays_.get());
+  }
+}
+
+void Recorder::JudgeLoads() {
+  constexpr size_t kJudged = 13;
+  LoadStudyResult& loads = result_.loads;
+  const KinematicTree& tree = equations_.tree();
+  const std::vector<int> driven = DrivenVelocities(prepared_.simulation, tree);
+  const size_t count = std::min(result_.size(), kJudged);
+  for (size_t i = 0; i < count; ++i) {
+    const VectorXd q = result_.Q(i * result_.size() / count);
+    const auto here = JudgeCertainty(tree, ChooseFreedoms(tree, q, driven, kRankTolerance), q,
+                                     prepared_.model.rounding);
+    if (loads.certainty.empty()) loads.certainty = here;
+    for (size_t j = 0; j < here.size(); ++j) {
+      for (int k = 0; k < 6; ++k) {
+        Certainty& verdict = loads.certainty[j][k];
+        if (here[j][k] == Certainty::kNotDetermined || verdict == Certainty::kSingular) {
+          verdict = here[j][k];
+        }
+      }
+    }
+  }
+  loads.drive_certainty.assign(prepared_.simulation.drives.size(), Certainty::kCertain);
+  loads.open = FindOpenComponents(loads, FindPeaks(loads.poses.arrays()), nullptr, tree.length);
+}
+
+void Recorder::Finish() {
+  if (!options_.loads || result_.times.empty()) return;
+  LoadStudyResult& loads = result_.loads;
+  CutTo(result_.size(), arrays_.get());
+  loads.mobility = prepared_.mobility.mobility;
+  loads.redundant_equations = prepared_.mobility.redundant;
+  const Mechanism& mechanism = prepared_.model.tree.mechanism;
+  for (const Loop& loop : prepared_.model.tree.loops) {
+    loads.cut_joints.push_back(mechanism.joints[loop.joint].name);
+  }
+  const double length = prepared_.simulation.norm_length;
+  loads.norm_length = length > 0 ? length : prepared_.model.tree.length;
+  loads.notes = prepared_.notes;
+  const double largest = Largest(arrays_->power_error_scales);
+  for (double& error : arrays_->power_errors) error = largest > 0 ? error / largest : 0;
+  loads.max_closure = Largest(arrays_->closures);
+  loads.max_power_error = Largest(arrays_->power_errors);
+  loads.poses = PoseSeries(arrays_);
+  JudgeLoads();
+}
+
+}  // namespace vmech

@@ -1,0 +1,123 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/simulation/simulation.h"
+#include "vmech/kinematics/tree/kinematic_tree.h"
+
+namespace vmech {
+
+enum class SimulationStatus {
+  kNotRun,
+  kFinished,     ///< it went to the last of the times
+  kReached,      ///< a CoordinateWatch that ends the run was reached
+  kInterrupted,  ///< SimulationOptions::progress said so; what was computed is there
+  kFailed,       ///< it could not go on, and `message` says why; what was computed is there
+};
+
+constexpr std::string_view NameOf(SimulationStatus status) {
+  switch (status) {
+    case SimulationStatus::kNotRun:
+      return "not run";
+    case SimulationStatus::kFinished:
+      return "finished";
+    case SimulationStatus::kReached:
+      return "reached";
+    case SimulationStatus::kInterrupted:
+      return "interrupted";
+    case SimulationStatus::kFailed:
+      return "failed";
+  }
+  return "";
+}
+
+/// Something that happened at once.
+struct SimulationEvent {
+  enum class Kind {
+    kRebound,        ///< a limit was hit, and the freedom went back
+    kLimitCloses,    ///< a freedom comes to rest at its limit
+    kLimitOpens,     ///< and leaves it
+    kSticks,         ///< dry friction brings a contact to rest, or holds it from the start
+    kSlips,          ///< and lets it go
+    kReached,        ///< a CoordinateWatch
+    kMethodChanged,  ///< the mechanism has proved stiff: BDF from here
+  };
+
+  double time = 0;  ///< [s]
+  Kind kind = Kind::kReached;
+  FreedomId at;      ///< the first freedom of its contact; no joint for kMethodChanged
+  double value = 0;  ///< the coordinate [m] or [rad]
+  double rate = 0;   ///< before the event [m/s] or [rad/s]
+};
+std::string_view NameOf(SimulationEvent::Kind kind);
+
+/// Of the whole mechanism at one time [J].
+struct EnergySample {
+  double kinetic = 0;
+  double weight = 0;   ///< zero with all centres of gravity at the height of the reference point
+  double springs = 0;  ///< of joints and of the hand's coupling
+  double supplied =
+      0;  ///< by drives, motors, external wrenches and the hand's motion, since the start
+  double dissipated = 0;  ///< by dampers, dry friction and impacts, since the start
+  double Total() const { return kinetic + weight + springs; }
+  /// Total less what it was at the start, less what was supplied, plus what was dissipated.
+  double error = 0;
+};
+
+struct SimulationStatistics {
+  SimulationMethod method = SimulationMethod::kAdams;  ///< at the end
+  long steps = 0;
+  long evaluations = 0;  ///< of the accelerations
+  long error_test_failures = 0;
+  long nonlinear_iterations = 0, nonlinear_failures = 0;
+  long jacobians = 0;             ///< BDF and IDAS
+  long projections = 0;           ///< returns to the loops in mid-run
+  long restarts = 0;              ///< of the integrator: after projections and events
+  long partitions = 0;            ///< choices of independent freedoms
+  long singular_poses = 0;        ///< evaluations at poses where loops lose rank
+  double largest_drift = 0;       ///< loop error, dimensionless, before projection
+  double largest_rate_drift = 0;  ///< the same of the loops' rates [1/s]
+  double largest_closure = 0;     ///< of the results
+  double seconds = 0;             ///< the run without the joints' wrenches
+};
+
+/// A start rate that the loops moved.
+struct MovedRate {
+  FreedomId at;
+  double from = 0, to = 0;  ///< [m/s] or [rad/s]
+};
+
+struct SimulationResult {
+  SimulationStatus status = SimulationStatus::kNotRun;
+  std::string message;  ///< why it stopped, a sentence
+
+  KinematicTree tree;           ///< of the assembled mechanism; q and v are its coordinates
+  std::vector<double> times;    ///< [poses] as wanted, as far as it went; and the end, if not one
+  std::vector<double> q;        ///< [poses, nq]
+  std::vector<double> v, vdot;  ///< [poses, nv]
+  std::vector<EnergySample> energies;  ///< [poses]
+  std::vector<Wrenchd> hand;  ///< [poses] what the hand's coupling does to the mechanism at Go
+  std::vector<double> motor_forces;  ///< [poses, motors] [N] or [N m]
+  std::vector<SimulationEvent> events;
+  SimulationStatistics statistics;
+
+  std::vector<MovedRate> moved_rates;  ///< start rates that the loops did not allow as given
+  std::vector<std::string> notes;      ///< what the assembly moved, as AssembledMechanism::Notes
+  std::vector<std::string> warnings;
+
+  /// Every joint along the trajectory, with the verdicts and rules of a load study: coordinates,
+  /// rates, accelerations, wrenches, link motions. Its drives are those of the simulation. Empty if
+  /// SimulationOptions::loads is off.
+  LoadStudyResult loads;
+
+  size_t size() const { return times.size(); }
+  Eigen::Map<const VectorXd> Q(size_t pose) const { return {&q[pose * tree.nq], tree.nq}; }
+  Eigen::Map<const VectorXd> V(size_t pose) const { return {&v[pose * tree.nv], tree.nv}; }
+  Eigen::Map<const VectorXd> Vdot(size_t pose) const { return {&vdot[pose * tree.nv], tree.nv}; }
+  std::string BriefReport() const;  ///< a line
+};
+
+}  // namespace vmech

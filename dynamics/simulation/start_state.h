@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "vmech/dynamics/simulation/equations_of_motion.h"
+#include "vmech/dynamics/simulation/simulation_result.h"
+
+namespace vmech {
+
+/// Where a simulation begins: on its loops, with rates that they allow.
+struct StartState {
+  VectorXd q, v;  ///< [nq], [nv]
+  std::vector<MovedRate> moved_rates;
+};
+
+/// The given rates as nearly as loops and drives allow, lengths over the characteristic length, and
+/// of the motions that have them the one with the least kinetic energy.
+StartState FindStartState(const PreparedSimulation& prepared, EquationsOfMotion* equations);
+
+}  // namespace vmech
