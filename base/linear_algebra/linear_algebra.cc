@@ -76,9 +76,19 @@ NullSpace FindNullSpace(const MatrixXd& A, double tolerance) {
 }
 
 std::vector<int> MostIndependentRows(const MatrixXd& A, int count) {
-  const Eigen::ColPivHouseholderQR<MatrixXd> qr(A.transpose());
+  constexpr double kAlike = 1 - 1e-8;
+  MatrixXd left = A;  // of each row, less its part along those chosen
   std::vector<int> rows;
-  for (int i = 0; i < count; ++i) rows.push_back(qr.colsPermutation().indices()[i]);
+  for (int i = 0; i < count; ++i) {
+    const VectorXd size = left.rowwise().norm();
+    const double enough = kAlike * size.maxCoeff();
+    const auto first =
+        std::find_if(size.begin(), size.end(), [&](double s) { return s >= enough; });
+    rows.push_back(static_cast<int>(first - size.begin()));
+    const VectorXd direction = left.row(rows.back()).transpose().stableNormalized();
+    left -= (left * direction).eval() * direction.transpose();
+    left.row(rows.back()).setZero();
+  }
   return rows;
 }
 

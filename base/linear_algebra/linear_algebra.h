@@ -43,7 +43,8 @@ struct RankSplit {
 };
 RankSplit SplitByRank(const MatrixXd& A, double tolerance);
 
-/// The first `count` rows of A that column pivoting of A' chooses: the best-conditioned ones.
+/// `count` rows of A, one after the other the one that is farthest from the span of those before;
+/// of rows that are alike but for rounding, the first.
 std::vector<int> MostIndependentRows(const MatrixXd& A, int count);
 
 /// Singular values, largest first, and all left singular vectors [rows, rows].
