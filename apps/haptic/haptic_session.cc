@@ -14,9 +14,11 @@
 #include "vmech/hw_interface/loop/replay_master.h"
 #include "vmech/hw_interface/masters/plugin_master.h"
 #include "vmech/hw_interface/masters/spacenav_master.h"
+#include "vmech/hw_interface/recording/recording_file.h"
 #include "vmech/hw_interface/remote/udp_master.h"
 #include "vmech/hw_interface/rendering/coupling_choice.h"
 #include "vmech/hw_interface/rendering/hand_motion.h"
+#include "vmech/hw_interface/rendering/registration.h"
 #include "vmech/hw_interface/safety/stability.h"
 #include "vmech/mechanisms/files/document.h"
 #include "vmech/mechanisms/files/reader.h"
@@ -97,8 +99,13 @@ Rendering MakeCoupled(const RenderingRequest& request, const KinematicTree& tree
     report += fmt::format("forces are felt at {:.3g} % of the mechanism's{}\n", 100 * options.scale,
                           request.scale > 0 ? "" : ": what this device can render (--scale)");
   }
+  SessionPromise promise{true, false, options.scale, 1, options.coupling};
+  promise.coupling.stiffness /= options.scale;
+  promise.coupling.damping /= options.scale;
+  promise.coupling.max_force /= options.scale;
+  promise.coupling.max_moment /= options.scale;
   return {std::make_unique<CoupledTick>(tree, grasp, q, device.period, options), choice.Safety(),
-          std::move(report)};
+          std::move(report), promise};
 }
 
 Rendering MakePaper(const RenderingRequest& request, const KinematicTree& tree, int grasp,
@@ -111,8 +118,15 @@ Rendering MakePaper(const RenderingRequest& request, const KinematicTree& tree, 
   std::string report =
       fmt::format("constraint: {:.4g} N/m, {:.4g} N m/rad; {:.3g} % of the inertia\n",
                   options.law.stiffness[0], options.law.stiffness[3], 100 * options.inertia);
+  SessionPromise promise{true, true, 1, options.inertia, {}};
+  promise.coupling.stiffness = options.law.stiffness;
+  promise.coupling.damping = options.law.damping;
+  if (tree.mechanism.grasps[grasp].kind == GraspKind::kPoint) {
+    promise.coupling.stiffness.tail<3>().setZero();
+    promise.coupling.damping.tail<3>().setZero();
+  }
   return {std::make_unique<MechanismTick>(tree, grasp, q, device, options), SafetyOptions{},
-          std::move(report)};
+          std::move(report), promise};
 }
 
 }  // namespace

@@ -38,7 +38,13 @@ IoStatus ReplayMaster::OnRead(std::int64_t, MasterState* state) noexcept {
   const TickRecord& tick = recording_.ticks[next_++];
   *state = tick.state;
   state->valid &= info().senses;
+  observed_ = tick.observed;
+  hand_ = tick.hand.Moving();
   return kind_ == ReplayKind::kSession ? tick.io : IoStatus::kOk;
+}
+
+const MovingFrame* ReplayMaster::ObservedHand() const noexcept {
+  return kind_ == ReplayKind::kSession && observed_ ? &hand_ : nullptr;
 }
 
 }  // namespace vmech

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "vmech/base/pose.h"
+#include "vmech/base/screw.h"
 #include "vmech/hw_interface/masters/device_info.h"
 
 namespace vmech {
@@ -87,6 +88,10 @@ class Master {
   /// advances its simulation to it.
   [[nodiscard]] IoStatus Read(std::int64_t now_ns, MasterState* state) noexcept;
   [[nodiscard]] IoStatus Write(const MasterCommand& command) noexcept;
+
+  /// The hand in D in the last sample, where that is known better than the sample tells: by a
+  /// recording of what an observer knew. Null: it is not.
+  virtual const MovingFrame* ObservedHand() const noexcept { return nullptr; }
 
   Lifecycle lifecycle() const noexcept { return lifecycle_; }
   /// Valid from Configure on.
