@@ -66,7 +66,8 @@ def read(data):
             assert index == chunks[-1]["entries"][channel]
             chunks[-1]["indexes"][channel] = offset
         elif opcode == 0x0C:
-            metadata[cursor.text()] = cursor.mapping("text", "text")
+            name = cursor.text()
+            metadata[name] = cursor.mapping("text", "text")
         elif opcode == 9:
             cursor.take(16)
             name, kind = cursor.text(), cursor.text()
