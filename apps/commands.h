@@ -81,7 +81,8 @@ struct HapticArguments {
   std::string wrench = "workless";     ///< paper: rule of w_d, see ParseWrench
   bool gripper = false;                ///< hold while the gripper is closed
   bool view = false;                   ///< shown on a page
-  std::filesystem::path record;        ///< empty: no recording
+  std::filesystem::path record;        ///< CSV or MCAP; empty: no recording
+  bool force = false;                  ///< write over an old recording
   bool free_running = false;           ///< as fast as it computes
   std::optional<double> tolerance;     ///< instead of the mechanism's own
   bool post_mortem = true;             ///< write the last ticks after a fault
@@ -101,6 +102,9 @@ struct ReplayArguments {
   std::filesystem::path recording;  ///< of vmech haptic
   std::filesystem::path file;       ///< mechanism or study; empty: that of the recording
   std::filesystem::path motion;     ///< where the hand's motion goes as a table; empty: nowhere
+  std::filesystem::path record;     ///< the session as it is now; empty: no recording
+  bool force = false;               ///< write over an old recording
+  bool audit = false;               ///< look at its numbers instead
   bool view = false;                ///< shown on a page, at the speed of the recording
   bool quiet = false;
 };

@@ -219,8 +219,11 @@ void AddHaptic(CLI::App* app, vmech::HapticArguments* haptic) {
                     "simulated operator lets go for a second now and then");
   command->add_flag("--view", haptic->view,
                     "show the session in the browser, at an address that is printed");
-  command->add_option("--record", haptic->record, "write every tick to this file")
+  command
+      ->add_option("--record", haptic->record,
+                   "write every tick to this file while it runs: .mcap, else CSV")
       ->type_name("FILE");
+  command->add_flag("--force", haptic->force, "write over an old recording");
   AddTolerance(command, &haptic->tolerance);
   command->add_flag("--free", haptic->free_running, "as fast as it computes, in simulated time");
   command->add_flag("-q,--quiet", haptic->quiet, "print nothing but errors");
@@ -251,7 +254,10 @@ void AddView(CLI::App* app, vmech::ViewArguments* view) {
 
 constexpr const char* kReplayHelp =
     "Runs a recording of vmech haptic --record through the same loop again and prints the same\n"
-    "report. With --motion the hand becomes the table of a study: motion: {grasp: .., table: ..}";
+    "report. With --audit nothing runs: energy, loops, wrenches and what the hand felt are "
+    "computed\n"
+    "from the recording alone. With --motion the hand becomes the table of a study:\n"
+    "motion: {grasp: .., table: ..}";
 
 void AddReplay(CLI::App* app, vmech::ReplayArguments* replay) {
   CLI::App* command = app->add_subcommand("replay", kReplayHelp);
@@ -262,6 +268,13 @@ void AddReplay(CLI::App* app, vmech::ReplayArguments* replay) {
       ->type_name("FILE");
   command->add_option("--motion", replay->motion, "write the hand's motion as a table")
       ->type_name("FILE");
+  command
+      ->add_option("--record", replay->record,
+                   "write the session anew, in the format of today: .mcap, else CSV")
+      ->type_name("FILE");
+  command->add_flag("--force", replay->force, "write over an old recording");
+  command->add_flag("--audit", replay->audit,
+                    "compute from the recording alone whether its numbers hold");
   command->add_flag("--view", replay->view,
                     "show it in the browser, at the speed of the recording");
   command->add_flag("-q,--quiet", replay->quiet, "print nothing but errors");

@@ -98,7 +98,8 @@ FileKind KindOfFile(const fs::path& path) {
   if (!fs::exists(path, ignored)) return FileKind::kUnknown;
   if (fs::is_directory(path, ignored)) return KindOfFolder(path);
   const std::string beginning = Beginning(path), ending = Ending(path);
-  if (beginning.starts_with("# vmech recording")) return FileKind::kRecording;
+  const bool is_mcap = beginning.starts_with("\x89MCAP");
+  if (is_mcap || beginning.starts_with("# vmech recording")) return FileKind::kRecording;
   if (beginning.starts_with("ISO-10303-21") || beginning.starts_with("<")) {
     return FileKind::kDrawing;
   }

@@ -14,11 +14,19 @@
 
 #include "vmech/apps/commands.h"
 #include "vmech/apps/files/file_kind.h"
+#include "vmech/apps/files/inputs_apart.h"
 #include "vmech/apps/haptic/haptic_session.h"
 #include "vmech/apps/haptic/haptic_view.h"
+#include "vmech/apps/haptic/session_recording.h"
 #include "vmech/dynamics/in_hand/passive_joints.h"
+#include "vmech/hw_interface/audit/audit.h"
+#include "vmech/hw_interface/audit/felt.h"
+#include "vmech/hw_interface/audit/promise.h"
+#include "vmech/hw_interface/audit/recorded_tree.h"
 #include "vmech/hw_interface/loop/replay_master.h"
 #include "vmech/hw_interface/loop/runner.h"
+#include "vmech/hw_interface/recording/recording_file.h"
+#include "vmech/hw_interface/recording/recording_reader.h"
 #include "vmech/hw_interface/safety/stability.h"
 #include "vmech/kinematics/loops/assembled_mechanism.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
@@ -94,38 +102,23 @@ Mechanism Assembled(const HapticArguments& arguments, Mechanism mechanism) {
   return assembled.mechanism;
 }
 
-RunnerOptions OptionsOf(const HapticArguments& arguments, const Matrix3d& R_WD,
-                        const Rendering& rendering) {
-  RunnerOptions options;
-  options.observer = rendering.observer;
-  options.seconds = arguments.seconds;
-  options.record = !arguments.record.empty();
-  // A recording does not hold the arm: its replay is the same to the bit without the observer.
-  if (options.record) options.observer.bandwidth = 0;
-  if (arguments.post_mortem) options.post_mortem = arguments.file.stem().string() + "-fault.csv";
-  options.R_WD = R_WD;
-  options.safety = rendering.safety;
-  options.gripper = arguments.gripper;
-  options.notes = {{"file", arguments.file.string()},
-                   {"grasp", arguments.grasp},
-                   {"coupling", arguments.coupling},
-                   {"scale", fmt::to_string(arguments.scale)},
-                   {"stiffness", fmt::to_string(arguments.stiffness)},
-                   {"inertia", fmt::to_string(arguments.inertia)},
-                   {"contact", arguments.contact},
-                   {"estimator", arguments.estimator},
-                   {"wrench", arguments.wrench},
-                   {"gripper", fmt::to_string(static_cast<int>(arguments.gripper))}};
-  if (arguments.free_running) options.realtime.reset();
-  return options;
-}
-
 /// A mechanism that is held, where the hand takes hold.
 struct HeldMechanism {
   explicit HeldMechanism(const HapticArguments& arguments)
-      : subject(ReadSubject(arguments.file, arguments.grasp)),
-        tree(BuildKinematicTree(Assembled(arguments, subject.mechanism),
-                                KeepPassiveJoints(subject.mechanism))),
+      : HeldMechanism(ReadSubject(arguments.file, arguments.grasp),
+                      [&](const Mechanism& mechanism) { return Assembled(arguments, mechanism); }) {
+  }
+  /// That of a recording, as it was.
+  explicit HeldMechanism(const RecordingHeader& header)
+      : HeldMechanism(
+            HapticSubject{
+                RecordedTree(header).tree.mechanism, RecordedTree(header).grasp_index, {}},
+            [](const Mechanism& mechanism) { return mechanism; }) {}
+
+  template <typename Assemble>
+  HeldMechanism(HapticSubject held, const Assemble& assemble)
+      : subject(std::move(held)),
+        tree(BuildKinematicTree(assemble(subject.mechanism), KeepPassiveJoints(subject.mechanism))),
         q(StartCoordinates(tree)),
         R_WD(DeviceAxes(subject.mechanism)) {
     const GraspFrame grasp = GraspFrameOf(tree, subject.grasp);
@@ -140,6 +133,31 @@ struct HeldMechanism {
   Matrix3d R_WD;
   Posed X_WG;
 };
+
+RunnerOptions OptionsOf(const HapticArguments& arguments, const HeldMechanism& held,
+                        const Rendering& rendering) {
+  RunnerOptions options;
+  options.seconds = arguments.seconds;
+  options.observer = rendering.observer;
+  if (arguments.post_mortem) options.post_mortem = arguments.file.stem().string() + "-fault.csv";
+  options.R_WD = held.R_WD;
+  options.safety = rendering.safety;
+  options.gripper = arguments.gripper;
+  options.notes = {{"file", arguments.file.string()},
+                   {"grasp", arguments.grasp},
+                   {"coupling", arguments.coupling},
+                   {"scale", fmt::to_string(arguments.scale)},
+                   {"stiffness", fmt::to_string(arguments.stiffness)},
+                   {"inertia", fmt::to_string(arguments.inertia)},
+                   {"contact", arguments.contact},
+                   {"estimator", arguments.estimator},
+                   {"wrench", arguments.wrench},
+                   {"gripper", fmt::to_string(static_cast<int>(arguments.gripper))}};
+  for (const auto& note : NotesOf(rendering.promise)) options.notes.push_back(note);
+  options.mechanism = RecordedMechanismOf(held.tree);
+  if (arguments.free_running) options.realtime.reset();
+  return options;
+}
 
 /// Runs the loop of a configured master and reports.
 int Hold(const HeldMechanism& held, HapticArguments arguments, Master* master) {
@@ -159,7 +177,9 @@ int Hold(const HeldMechanism& held, HapticArguments arguments, Master* master) {
   FreeRunningClock free;
   LoopClock* clock = &wall;
   if (arguments.free_running) clock = &free;
-  Runner runner(OptionsOf(arguments, held.R_WD, rendering), master, rendering.tick.get(), clock);
+  Runner runner(OptionsOf(arguments, held, rendering), master, rendering.tick.get(), clock);
+  SessionRecording recording({arguments.record, arguments.force, arguments.free_running}, held.tree,
+                             held.subject.grasp, &runner);
   if (!arguments.quiet) fmt::print("{}{}", BoundsReport(master->info()), rendering.report);
   RunSummary summary;
   std::optional<HapticView> view;
@@ -173,18 +193,20 @@ int Hold(const HeldMechanism& held, HapticArguments arguments, Master* master) {
     const StatusLine line(runner, arguments.quiet);
     summary = runner.Run();
   }
-  if (!arguments.record.empty()) {
-    UsingFile("--record", [&] { WriteRecording(arguments.record, runner.Kept()); });
+  recording.Finish();
+  if (!arguments.quiet) {
+    fmt::print("{}{}{}", summary.FullReport(), rendering.tick->FullReport(), recording.Report());
   }
-  if (!arguments.quiet) fmt::print("{}{}", summary.FullReport(), rendering.tick->FullReport());
+  recording.RequireWritten();
   return summary.status == RunStatus::kFault ? kNoSolution : kSuccess;
 }
 
 /// @throws FileErrors: a recording that cannot be read is bad input.
-Recording ReadInput(const std::filesystem::path& file) {
-  return ReadAs({"replay", {FileKind::kRecording}}, file, [](const std::filesystem::path& path) {
+template <typename Read>
+auto ReadInput(const std::filesystem::path& file, const Read& read) {
+  return ReadAs({"replay", {FileKind::kRecording}}, file, [&](const std::filesystem::path& path) {
     try {
-      return ReadRecording(path);
+      return read(path);
     } catch (const std::runtime_error& error) {
       throw FileErrors({{error.what(), 0, 0, "", "a recording of `vmech haptic` is wanted"}});
     }
@@ -196,6 +218,8 @@ HapticArguments ArgumentsOf(const Recording& recording, const ReplayArguments& r
   HapticArguments arguments;
   arguments.file =
       replay.file.empty() ? std::filesystem::path(recording.Note("file")) : replay.file;
+  arguments.record = replay.record;
+  arguments.force = replay.force;
   if (arguments.file.empty() || recording.Note("coupling").empty()) {
     throw std::invalid_argument(
         fmt::format("{}: does not say what was held; only recordings of `vmech haptic --record` do",
@@ -228,9 +252,45 @@ HapticArguments ArgumentsOf(const Recording& recording, const ReplayArguments& r
   return arguments;
 }
 
+std::string StateOf(const RecordingReader& reader) {
+  std::string text;
+  if (!reader.complete()) text += "note: the recording was cut short: it has no last line\n";
+  if (reader.lost() > 0) text += fmt::format("note: {} ticks are missing in it\n", reader.lost());
+  return text;
+}
+
+/// Looks at every number of a recording.
+int Audit(const std::filesystem::path& file) {
+  RecordingReader reader(file);
+  const RecordedTree held(reader.header());
+  RecordingAudit audit(reader.header());
+  FeltFit felt(reader.header(), held);
+  TickRecord tick = reader.header().EmptyTick();
+  while (reader.Next(&tick)) {
+    audit.Take(tick);
+    felt.Take(tick);
+  }
+  const AuditReport report = audit.Report();
+  const FeltReport told = felt.Report();
+  fmt::print("{}{}{}{}", report.Text(), told.Text(), told.Verdict(), StateOf(reader));
+  return report.sound() ? kSuccess : kNoSolution;
+}
+
+/// Nothing is written over what a session reads.
+void RequireRecordApart(const HapticArguments& arguments) {
+  if (arguments.record.empty()) return;
+  constexpr std::string_view kReplay = "replay:";
+  std::vector<std::filesystem::path> inputs{arguments.file};
+  if (arguments.master.starts_with(kReplay)) {
+    inputs.emplace_back(arguments.master.substr(kReplay.size()));
+  }
+  RequireOutputsApart(inputs, {arguments.record});
+}
+
 }  // namespace
 
 int RunHaptic(const HapticArguments& arguments) {
+  RequireRecordApart(arguments);
   const HeldMechanism held(arguments);
   const std::unique_ptr<Master> master =
       MakeMaster({arguments.master, arguments.rate, ParseGrip(arguments.grip), held.R_WD, held.X_WG,
@@ -240,9 +300,25 @@ int RunHaptic(const HapticArguments& arguments) {
 }
 
 int RunReplay(const ReplayArguments& replay) {
-  const Recording recording = ReadInput(replay.recording);
+  if (replay.audit) return ReadInput(replay.recording, Audit);
+  std::vector<std::filesystem::path> outputs;
+  for (const std::filesystem::path& output : {replay.record, replay.motion}) {
+    if (!output.empty()) outputs.push_back(output);
+  }
+  std::vector<std::filesystem::path> inputs{replay.recording};
+  if (!replay.file.empty()) inputs.push_back(replay.file);
+  RequireOutputsApart(inputs, outputs);
+  const Recording recording = ReadInput(replay.recording, [](const std::filesystem::path& file) {
+    return ReadRecording(file, RecordingPart::kSamples);
+  });
+  if (!recording.complete && !replay.quiet) {
+    fmt::print("note: the recording was cut short: it has no last line\n");
+  }
   const HapticArguments arguments = ArgumentsOf(recording, replay);
-  const HeldMechanism held(arguments);
+  const bool as_it_was = replay.file.empty() && !recording.mechanism.text.empty();
+  const HeldMechanism held = as_it_was
+                                 ? HeldMechanism(static_cast<const RecordingHeader&>(recording))
+                                 : HeldMechanism(arguments);
   if (!replay.motion.empty()) {
     WriteHandMotion(replay.motion, recording, held.R_WD, held.X_WG);
   }

@@ -14,10 +14,12 @@
 #include "vmech/hw_interface/loop/replay_master.h"
 #include "vmech/hw_interface/masters/plugin_master.h"
 #include "vmech/hw_interface/masters/spacenav_master.h"
+#include "vmech/hw_interface/recording/recording_file.h"
 #include "vmech/hw_interface/remote/udp_master.h"
 #include "vmech/hw_interface/rendering/coupling_choice.h"
 #include "vmech/hw_interface/rendering/hand_motion.h"
 #include "vmech/hw_interface/rendering/paper_choice.h"
+#include "vmech/hw_interface/rendering/registration.h"
 #include "vmech/mechanisms/files/document.h"
 #include "vmech/mechanisms/files/reader.h"
 #include "vmech/studies/study_reader.h"
@@ -99,8 +101,13 @@ Rendering MakeCoupled(const RenderingRequest& request, const KinematicTree& tree
       "weight at the hand {:.3g} N\n",
       K[0], K[3], choice.inertia_ratio, choice.weight);
   report += ScaleReport(options.scale, request.scale);
+  SessionPromise promise{true, false, options.scale, 1, options.coupling};
+  promise.coupling.stiffness /= options.scale;
+  promise.coupling.damping /= options.scale;
+  promise.coupling.max_force /= options.scale;
+  promise.coupling.max_moment /= options.scale;
   return {std::make_unique<CoupledTick>(tree, grasp, q, device.period, options), choice.Safety(),
-          HandObserverOptions{}, std::move(report)};
+          HandObserverOptions{}, std::move(report), promise};
 }
 
 ContactKind ParseContact(const std::string& word) {
@@ -143,8 +150,15 @@ Rendering MakePaper(const RenderingRequest& request, const KinematicTree& tree, 
                                 : fmt::format("felt up to {:.3g}", options.inertia_ratio);
   report += fmt::format("; weight at the hand {:.3g} N\n", choice.weight.head<3>().norm());
   report += ScaleReport(options.scale, request.scale);
+  SessionPromise promise{true, true, options.scale, 1, {}};
+  promise.coupling.stiffness = options.law.stiffness;
+  promise.coupling.damping = options.law.damping;
+  if (tree.mechanism.grasps[grasp].kind == GraspKind::kPoint) {
+    promise.coupling.stiffness.tail<3>().setZero();
+    promise.coupling.damping.tail<3>().setZero();
+  }
   return {std::make_unique<MechanismTick>(tree, grasp, q, device, options), choice.safety,
-          choice.observer, std::move(report)};
+          choice.observer, std::move(report), promise};
 }
 
 }  // namespace

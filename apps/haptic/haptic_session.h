@@ -7,8 +7,10 @@
 #include <string>
 #include <string_view>
 
+#include "vmech/hw_interface/audit/promise.h"
 #include "vmech/hw_interface/estimation/hand_observer.h"
 #include "vmech/hw_interface/masters/simulated_master.h"
+#include "vmech/hw_interface/recording/recording.h"
 #include "vmech/hw_interface/rendering/coupled_tick.h"
 #include "vmech/hw_interface/rendering/mechanism_tick.h"
 #include "vmech/kinematics/motion/motion_law.h"
@@ -82,6 +84,7 @@ struct Rendering {
   SafetyOptions safety;
   HandObserverOptions observer;
   std::string report;
+  SessionPromise promise;
 };
 
 /// A mechanism held at its grasp in the closed pose q, for a device. Keeps a reference to the tree.

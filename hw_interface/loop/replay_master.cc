@@ -18,7 +18,8 @@ DeviceInfo ReplayMaster::OnConfigure() {
   DeviceInfo info;
   info.period = recording_.period;
   info.takes_wrench = true;
-  const std::uint32_t senses = recording_.ticks.front().state.valid;
+  std::uint32_t senses = 0;  // a sample may lack what the device senses
+  for (const TickRecord& tick : recording_.ticks) senses |= tick.state.valid;
   if (kind_ == ReplayKind::kSession) {
     info.name = recording_.device;
     info.senses = senses;
@@ -38,7 +39,14 @@ IoStatus ReplayMaster::OnRead(std::int64_t, MasterState* state) noexcept {
   const TickRecord& tick = recording_.ticks[next_++];
   *state = tick.state;
   state->valid &= info().senses;
+  observed_ = tick.observed;
+  hand_ = tick.hand.Moving();
+  if (kind_ == ReplayKind::kSession) room_ = tick.room;
   return kind_ == ReplayKind::kSession ? tick.io : IoStatus::kOk;
+}
+
+const MovingFrame* ReplayMaster::ObservedHand() const noexcept {
+  return kind_ == ReplayKind::kSession && observed_ ? &hand_ : nullptr;
 }
 
 }  // namespace vmech

@@ -1,13 +1,14 @@
 #pragma once
 
-#include "vmech/hw_interface/loop/recording.h"
+#include "vmech/hw_interface/masters/master.h"
+#include "vmech/hw_interface/recording/recording.h"
 
 namespace vmech {
 
 enum class ReplayKind {
   kHand,     ///< the hand only: no wrench is at work, whatever was
-  kSession,  ///< the device with its physics, the wrenches at work and the samples that were
-             ///< missing
+  kSession,  ///< the device with its physics, the wrenches at work, the samples that were missing,
+             ///< and what the hand's observer made of them
 };
 
 /// A recording as a master: sample after sample, one per read, whatever is commanded.
@@ -17,6 +18,8 @@ class ReplayMaster : public Master {
   explicit ReplayMaster(Recording recording, ReplayKind kind = ReplayKind::kHand);
   ~ReplayMaster() override { Shutdown(); }
 
+  const MovingFrame* ObservedHand() const noexcept override;
+  WrenchLimit Room() const noexcept override { return room_; }
   bool finished() const noexcept { return next_ == recording_.ticks.size(); }
 
  private:
@@ -27,6 +30,9 @@ class ReplayMaster : public Master {
   Recording recording_;
   ReplayKind kind_;
   std::size_t next_ = 0;
+  bool observed_ = false;
+  MovingFrame hand_;
+  WrenchLimit room_;
 };
 
 }  // namespace vmech

@@ -4,10 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "vmech/base/check_range.h"
 #include "vmech/base/rotation_error.h"
 #include "vmech/base/screw_algebra.h"
+#include "vmech/hw_interface/recording/recording_file.h"
 
 namespace vmech {
 namespace {
@@ -28,6 +32,21 @@ std::unique_ptr<HandObserver> MakeObserver(const RunnerOptions& options, const T
 std::size_t RingSize(const RunnerOptions& options, std::uint64_t slots) {
   const auto keep = static_cast<std::uint64_t>(options.keep);
   return static_cast<std::size_t>(options.record ? std::max(slots, keep) : keep);
+}
+
+/// With everything as large as the tick will fill it.
+TickRecord EmptyRecord(const Tick& tick) {
+  TickRecord record;
+  tick.Show(&record.picture);
+  record.channels.resize(tick.ChannelNames().size());
+  return record;
+}
+
+std::vector<std::string> NamesOrNumbers(std::vector<std::string> names, std::size_t count) {
+  if (names.size() == count) return names;
+  names.clear();
+  for (std::size_t i = 0; i < count; ++i) names.push_back(fmt::to_string(i));
+  return names;
 }
 
 }  // namespace
@@ -55,7 +74,7 @@ Runner::Runner(const RunnerOptions& options, Master* master, Tick* tick, LoopClo
       channels_(tick->ChannelNames()) {
   options.Validate();
   slots_ = static_cast<std::uint64_t>(std::llround(options.seconds / period_));
-  kept_.resize(RingSize(options, slots_));
+  kept_.resize(RingSize(options, slots_), EmptyRecord(*tick));
   summary_.device = master->info().name;
   summary_.period = period_;
 }
@@ -77,6 +96,7 @@ RunSummary Runner::Run() {
     record.late_ns = static_cast<std::int32_t>(now_ns - slot_ns);
     RunSlot(slot_ns, &record);
     Account(record, now_ns);
+    if (recorder_ != nullptr) recorder_->Take(record);
     slot_ns += period_ns_;
   }
   master_->Deactivate();
@@ -123,8 +143,11 @@ IoStatus Runner::ReadMaster(std::int64_t slot_ns, MasterState* state) noexcept {
 /// The wrench of the mechanism on the hand, in the device's axes.
 TickOutput Runner::StepTick(IoStatus io, TickRecord* record) noexcept VMECH_NONBLOCKING {
   TickOutput out;
-  record->channels.fill(0);
+  std::fill(record->channels.begin(), record->channels.end(), 0.0);
   record->wanted_F_Ho_D.setZero();
+  record->observed = false;
+  record->room = {};
+  record->stored_energy = 0;
   if (!registered_) {
     if (io != IoStatus::kOk) return out;
     Register();
@@ -145,11 +168,13 @@ TickOutput Runner::StepTick(IoStatus io, TickRecord* record) noexcept VMECH_NONB
   input.fresh = fresh_;
   input.elapsed = fresh_ ? PeriodsBetween(last_sample_, state_, period_) * period_ : 0;
   input.state = &state_;
-  if (torques_) input.room = torques_->room();
+  record->room = input.room = Room();
   input.debt = safety_.Debt();
   input.charged_F_Ho_W = &charged;
-  if (observer_) {
-    registration_.TakeHandInWorld(HandNow(), &observed);
+  if (const std::optional<MovingFrame> hand = ObservedHand()) {
+    record->observed = true;
+    record->hand = RecordedHand::Of(*hand);
+    registration_.TakeHandInWorld(*hand, &observed);
     input.observed = &observed;
   } else {
     input.X_WH = registration_.HandInWorld(state_.X_DH);
@@ -159,21 +184,39 @@ TickOutput Runner::StepTick(IoStatus io, TickRecord* record) noexcept VMECH_NONB
   const Matrix3d R_DW = registration_.X_WD.R.transpose();
   record->wanted_F_Ho_D << R_DW * out.F_Ho_W.head<3>(), R_DW * out.F_Ho_W.tail<3>();
   if (out.status == TickStatus::kFailed) record->wanted_F_Ho_D.setZero();
+  Picture(out, record);
   return out;
+}
+
+void Runner::Picture(const TickOutput& out, TickRecord* record) const noexcept {
+  record->registration = registration_;
+  record->stored_energy = out.stored_energy;
+  tick_->Show(&record->picture);
+  record->picture.holds = holds_;
+  record->picture.F_Ho_W = out.F_Ho_W;
+}
+
+/// By the observer here, or by the one that was at work when the session was recorded. Where
+/// samples are missing, the hand goes on as it did, for a few periods.
+std::optional<MovingFrame> Runner::ObservedHand() const noexcept {
+  if (!observer_) {
+    const MovingFrame* hand = tick_->UsesObservedHand() ? master_->ObservedHand() : nullptr;
+    return hand != nullptr ? std::optional(*hand) : std::nullopt;
+  }
+  MovingFrame hand = observer_->hand_D();
+  const int ahead = std::min(missing_, options_.safety.hold_periods);
+  if (ahead > 0) hand.X = Displaced(hand.X, (ahead * period_) * hand.V);
+  return hand;
+}
+
+WrenchLimit Runner::Room() const noexcept {
+  return torques_ ? torques_->room() : master_->Room();
 }
 
 void Runner::Observe() noexcept {
   if (!observer_) return;
   const auto periods = std::lround(PeriodsBetween(last_sample_, state_, period_));
   observer_->Update(state_, safety_.WrenchAtWork(state_), static_cast<int>(periods));
-}
-
-/// As observed; where samples are missing, the hand goes on as it did, for a few periods.
-MovingFrame Runner::HandNow() const noexcept {
-  MovingFrame hand = observer_->hand_D();
-  const int ahead = std::min(missing_, options_.safety.hold_periods);
-  if (ahead > 0) hand.X = Displaced(hand.X, (ahead * period_) * hand.V);
-  return hand;
 }
 
 /// Puts the hand where the grasp frame is.
@@ -200,7 +243,8 @@ void Runner::GraspOrLetGo() noexcept {
   safety_.ForgetStoredEnergy();
   if (!closes) return;
   ++summary_.grasps;
-  const Posed X_DH = observer_ ? observer_->X_DH() : state_.X_DH;
+  const MovingFrame* observed = ObservedHand();
+  const Posed X_DH = observed != nullptr ? PoseOf(observed->X) : state_.X_DH;
   if (!tick_->GraspAt(registration_.HandInWorld(X_DH))) {
     safety_.Restart();
     registration_ = GraspedAt(options_.R_WD, state_.X_DH, tick_->GraspFrame());
@@ -265,10 +309,30 @@ Recording Runner::Kept() const {
   return LastTicks(kept_.size());
 }
 
-Recording Runner::LastTicks(std::uint64_t count) const {
+RecordingHeader Runner::Header() const {
   const DeviceInfo& info = master_->info();
-  Recording recording{summary_.device, period_,     channels_,    {},
-                      info.delay,      info.linear, info.angular, options_.notes};
+  RecordingHeader header;
+  header.device = summary_.device;
+  header.period = period_;
+  header.channels = channels_;
+  header.delay = info.delay;
+  header.linear = info.linear;
+  header.angular = info.angular;
+  header.notes = options_.notes;
+  header.states = tick_->StateNames();
+  header.mechanism = options_.mechanism;
+  const TickPicture& picture = kept_.front().picture;
+  RecordedMechanism& names = header.mechanism;
+  names.coordinates =
+      NamesOrNumbers(std::move(names.coordinates), static_cast<std::size_t>(picture.q.size()));
+  names.velocities =
+      NamesOrNumbers(std::move(names.velocities), static_cast<std::size_t>(picture.v.size()));
+  names.joints = NamesOrNumbers(std::move(names.joints), picture.joints.size());
+  return header;
+}
+
+Recording Runner::LastTicks(std::uint64_t count) const {
+  Recording recording{Header(), {}};
   count = std::min({count, summary_.ticks, static_cast<std::uint64_t>(kept_.size())});
   recording.ticks.reserve(count);
   for (std::uint64_t i = summary_.ticks - count; i < summary_.ticks; ++i) {

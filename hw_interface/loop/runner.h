@@ -11,6 +11,7 @@
 #include "vmech/hw_interface/loop/histogram.h"
 #include "vmech/hw_interface/loop/loop_clock.h"
 #include "vmech/hw_interface/loop/realtime.h"
+#include "vmech/hw_interface/recording/recorder.h"
 #include "vmech/hw_interface/rendering/tick.h"
 
 namespace vmech {
@@ -21,7 +22,8 @@ struct RunnerOptions {
   int keep = 2000;      ///< last ticks that are kept in any case, in [1, 1e6]
   /// Where the last ticks are written after a fault; empty: nowhere.
   std::filesystem::path post_mortem;
-  RecordingNotes notes;  ///< for the recordings
+  RecordingNotes notes;         ///< for the recordings
+  RecordedMechanism mechanism;  ///< for the recordings
   int command_life = 5;  ///< periods after which the device drops a command by itself, in [1, 1000]
   bool gripper = false;  ///< hold only while the gripper is closed, where the device senses it
   bool joint_torques = true;             ///< where the device takes them; else wrenches
@@ -96,13 +98,19 @@ class Runner {
   double period() const noexcept { return period_; }  ///< [s]
   /// The ticks that were kept, oldest first.
   Recording Kept() const;
+  /// What every recording of this run begins with.
+  RecordingHeader Header() const;
+  /// Gets every tick of the run from now on; null: nobody.
+  void SetRecorder(Recorder* recorder) noexcept { recorder_ = recorder; }
 
  private:
   bool IsOver() const noexcept;
   void RunSlot(std::int64_t slot_ns, TickRecord* record) noexcept;
   IoStatus ReadMaster(std::int64_t slot_ns, MasterState* state) noexcept;
   void Observe() noexcept;
-  MovingFrame HandNow() const noexcept;
+  std::optional<MovingFrame> ObservedHand() const noexcept;
+  WrenchLimit Room() const noexcept;
+  void Picture(const TickOutput& out, TickRecord* record) const noexcept;
   TickOutput StepTick(IoStatus io, TickRecord* record) noexcept VMECH_NONBLOCKING;
   void Register() noexcept;
   void TakeUpAgain() noexcept;
@@ -126,6 +134,7 @@ class Runner {
   MasterState state_;
   std::vector<std::string> channels_;
   std::vector<TickRecord> kept_;  // a ring
+  Recorder* recorder_ = nullptr;
   RunSummary summary_;
   LiveStatus live_;
   std::uint64_t slots_ = 0;  // to run; 0: no end

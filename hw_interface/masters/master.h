@@ -4,6 +4,8 @@
 #include <cstdint>
 
 #include "vmech/base/pose.h"
+#include "vmech/dynamics/in_hand/wrench_limit.h"
+#include "vmech/base/screw.h"
 #include "vmech/hw_interface/masters/device_info.h"
 
 namespace vmech {
@@ -88,6 +90,13 @@ class Master {
   /// senses them, is no new data: its switches count, everything else stays that of the last read.
   [[nodiscard]] IoStatus Read(std::int64_t now_ns, MasterState* state) noexcept;
   [[nodiscard]] IoStatus Write(const MasterCommand& command) noexcept;
+
+  /// The hand in D in the last sample, where that is known better than the sample tells: by a
+  /// recording of what an observer knew. Null: it is not.
+  virtual const MovingFrame* ObservedHand() const noexcept { return nullptr; }
+  /// What the device could exert at the posture of the last sample, where that is known to a
+  /// recording; no limit otherwise.
+  virtual WrenchLimit Room() const noexcept { return {}; }
 
   Lifecycle lifecycle() const noexcept { return lifecycle_; }
   /// Valid from Configure on.

@@ -72,6 +72,12 @@ std::vector<std::string> CoupledTick::ChannelNames() const {
   return names;
 }
 
+/// A bit each for slipping, standing at a limit and stopping, as Account sets them.
+std::vector<std::string> CoupledTick::StateNames() const {
+  return {"moves",   "slips",          "at limit",          "slips at limit",
+          "stopped", "slips; stopped", "at limit; stopped", "slips at limit; stopped"};
+}
+
 bool CoupledTick::GraspAt(const Posed& X_WH) noexcept {
   double nearest = std::numeric_limits<double>::infinity();
   vmech::GraspFrame grasp = grasp_;
@@ -128,6 +134,7 @@ TickOutput CoupledTick::Step(const TickInput& input, std::span<double> channels)
 /// The coupling carries what moves the mechanism and what it does not allow in one.
 void CoupledTick::Show(TickPicture* picture) const noexcept {
   picture->q = dynamics_.q();
+  picture->v = dynamics_.v();
   picture->joints = dynamics_.joints();
   picture->X_WH = PoseOf(hand_.X);
   picture->X_WG = dynamics_.X_WG();

@@ -50,6 +50,7 @@ class CoupledTick : public Tick {
               const CoupledTickOptions& options);
 
   std::vector<std::string> ChannelNames() const override;
+  std::vector<std::string> StateNames() const override;
   Posed GraspFrame() const noexcept override { return dynamics_.X_WG(); }
   bool UsesObservedHand() const noexcept override { return true; }
   /// The link whose skeleton, the lines between its anchors, is nearest; held as it is there.

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "vmech/hw_interface/masters/operator_model.h"
-#include "vmech/hw_interface/rendering/tick.h"
+#include "vmech/hw_interface/rendering/registration.h"
 #include "vmech/kinematics/motion/motion_law.h"
 
 namespace vmech {

@@ -118,14 +118,23 @@ MechanismTick::MechanismTick(const KinematicTree& tree, int grasp, const VectorX
 }
 
 std::vector<std::string> MechanismTick::ChannelNames() const {
-  std::vector<std::string> names{"off_position", "off_rotation", "dynamic_force", "track",
+  std::vector<std::string> names{"off_position", "off_rotation", "dynamic_force", "state",
                                  "inertia_share"};
   peaks_.AppendNames(&names);
   return names;
 }
 
+std::vector<std::string> MechanismTick::StateNames() const {
+  std::vector<std::string> names;
+  for (int s = 0; s <= static_cast<int>(TrackStatus::kLost); ++s) {
+    names.emplace_back(NameOf(static_cast<TrackStatus>(s)));
+  }
+  return names;
+}
+
 void MechanismTick::Show(TickPicture* picture) const noexcept {
   picture->q = tracker_.q();
+  picture->v = dynamics_.v();
   picture->joints = dynamics_.joints();
   picture->X_WH = X_WH_;
   picture->X_WG = X_WG_;

@@ -76,6 +76,7 @@ class MechanismTick : public Tick {
                 const MechanismTickOptions& options);
 
   std::vector<std::string> ChannelNames() const override;
+  std::vector<std::string> StateNames() const override;
   Posed GraspFrame() const noexcept override { return X_WG_; }
   void Reset() noexcept override;
   bool UsesObservedHand() const noexcept override {

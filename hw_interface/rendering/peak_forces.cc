@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "vmech/hw_interface/loop/recording.h"
+#include "vmech/hw_interface/rendering/tick.h"
 
 namespace vmech {
 

@@ -6,27 +6,12 @@
 
 #include "vmech/base/screw.h"
 #include "vmech/dynamics/in_hand/wrench_limit.h"
-#include "vmech/hw_interface/loop/recording.h"
+#include "vmech/hw_interface/masters/master.h"
+#include "vmech/hw_interface/rendering/tick_picture.h"
 
 namespace vmech {
 
-/// How the master's handle is laid over the mechanism's world W: D is placed by X_WD, and the
-/// hand's frame is the handle turned by R_HK, so that it can coincide with a grasp frame of any
-/// orientation.
-///
-///   X_WK = X_WD X_DH R_HK,   F_Ho_D = R_WD' F_Ko_W   (Ko = Ho)
-struct Registration {
-  Posed X_WD;
-  Matrix3d R_HK = Matrix3d::Identity();
-
-  Posed HandInWorld(const Posed& X_DH) const noexcept;
-  /// The hand, of a handle that moves in D.
-  void TakeHandInWorld(const MovingFrame& handle, MovingFrame* hand) const noexcept;
-};
-
-/// The registration that puts the hand where the grasp frame is, with the device's axes along R_WD:
-/// a grasp without a jump.
-Registration GraspedAt(const Matrix3d& R_WD, const Posed& X_DH, const Posed& X_WG) noexcept;
+inline constexpr int kMaxChannels = 32;
 
 struct TickInput {
   Posed X_WH;             ///< the hand, as measured; not set where an observer knows it
@@ -58,17 +43,6 @@ struct TickOutput {
   double stored_energy = 0;            ///< of the virtual mechanism, see passivity.h [J]
 };
 
-/// What a screen shows of a mechanism in a hand. World axes, SI.
-struct TickPicture {
-  VectorXd q;                   ///< of the mechanism's tree [nq]
-  std::vector<Wrenchd> joints;  ///< every joint's wrench, as JointSample
-  Posed X_WH, X_WG;             ///< the hand and the grasp frame
-  bool holds = true;
-  Vector6d F_Ho_W = Vector6d::Zero();      ///< what the hand is to feel, about Ho
-  Vector6d dynamic = Vector6d::Zero();     ///< w_d: moves the mechanism, about Go
-  Vector6d constraint = Vector6d::Zero();  ///< w_c: what the mechanism does not allow, about Go
-};
-
 /// The virtual side: from the hand to what it feels, once per sample. Implementations allocate in
 /// their constructors only.
 class Tick {
@@ -76,6 +50,8 @@ class Tick {
   virtual ~Tick() = default;
   /// Names of what Step writes into `channels`, at most kMaxChannels.
   virtual std::vector<std::string> ChannelNames() const = 0;
+  /// What the numbers 0, 1, .. of the channel "state" mean; empty: there is no such channel.
+  virtual std::vector<std::string> StateNames() const { return {}; }
   /// Where the hand takes hold: the grasp frame now.
   virtual Posed GraspFrame() const noexcept = 0;
   /// The hand closes at X_WH: takes hold of what is nearest there, without a jump. False: that is

@@ -18,6 +18,7 @@ class ShownTick : public Tick {
       : tick_(std::move(tick)), pictures_(picture) {}
 
   std::vector<std::string> ChannelNames() const override { return tick_->ChannelNames(); }
+  std::vector<std::string> StateNames() const override { return tick_->StateNames(); }
   Posed GraspFrame() const noexcept override { return tick_->GraspFrame(); }
   bool GraspAt(const Posed& X_WH) noexcept override { return tick_->GraspAt(X_WH); }
   void Reset() noexcept override { tick_->Reset(); }

@@ -1,12 +1,16 @@
 """haptic_test.py VMECH EXAMPLES: vmech haptic and vmech replay as their users meet them."""
 
 import csv
+import json
 import pathlib
 import shutil
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
+
+import mcap_reader
 
 VMECH = ""
 EXAMPLES = pathlib.Path()
@@ -34,7 +38,8 @@ class Haptic(unittest.TestCase):
     @staticmethod
     def outcome(report):
         """What does not depend on the machine and its clock."""
-        return [line for line in report.splitlines() if not line.strip().startswith(TIMES)]
+        return [line for line in report.splitlines()
+                if not line.strip().startswith((*TIMES, "recorded"))]
 
     def test_every_example_is_held_to_the_end(self):
         for name in MECHANISMS:
@@ -56,9 +61,81 @@ class Haptic(unittest.TestCase):
     def test_replay_gives_the_same_report(self):
         for options in ((), ("--coupling", "paper"), ("--gripper", "--scale", 0.5)):
             with self.subTest(options=options):
-                first = self.hold("four-bar", "--seconds", 2, "--record", "hand.csv", *options)
+                first = self.hold("four-bar", "--seconds", 2, "--record", "hand.csv", "--force",
+                                  *options)
                 again = self.run_vmech("replay", "hand.csv")
                 self.assertEqual(self.outcome(again.stdout), self.outcome(first.stdout))
+
+    def test_a_recording_is_audited_and_says_what_was_felt(self):
+        self.hold("slider-crank", "--seconds", 6, "--grip", "firm", "--record", "hand.csv")
+        report = self.run_vmech("replay", "hand.csv", "--audit").stdout
+        self.assertIn("verdict: sound", report)
+        self.assertIn("inertia was felt as promised", report)
+        rows = (self.folder / "hand.csv").read_text(encoding="utf-8").splitlines()
+        middle = len(rows) - 3000
+        cells = rows[middle].split(",")
+        names = next(row for row in rows if row.startswith("sequence")).split(",")
+        place = next(i for i, name in enumerate(names) if name.startswith("velocity"))
+        cells[place] = str(float(cells[place]) + 0.01)
+        rows[middle] = ",".join(cells)
+        (self.folder / "hand.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+        report = self.run_vmech("replay", "hand.csv", "--audit", code=3).stdout
+        self.assertIn("NOT SOUND", report)
+
+    def test_a_recording_in_mcap_is_whole_and_the_same(self):
+        self.hold("four-bar", "--seconds", 1, "--record", "hand.csv")
+        self.run_vmech("replay", "hand.csv", "--record", "hand.mcap", "--quiet")
+        messages, metadata, attachments = mcap_reader.read(
+            (self.folder / "hand.mcap").read_bytes())
+        self.assertEqual(len(messages["vmech/tick"]), 1000)
+        self.assertEqual(len(messages["tf"]), 50)
+        self.assertEqual(metadata["vmech end"], {"ticks": "1000", "lost": "0"})
+        self.assertEqual(metadata["vmech recording"]["period"], "0.001")
+        self.assertIn(b"vmech:", attachments["mechanism.yaml"][1])
+        with open(self.folder / "hand.csv", newline="", encoding="utf-8") as file:
+            table = list(csv.DictReader(line for line in file if not line.startswith("#")))
+        times = ("late_ns", "compute_ns")
+        for row, (_, message) in zip(table, messages["vmech/tick"]):
+            tick = json.loads(message)
+            self.assertEqual(list(tick), list(row))
+            for name, value in tick.items():
+                if name in times:
+                    continue
+                if isinstance(value, str):
+                    self.assertEqual(value, row[name])
+                else:
+                    self.assertEqual(float(value), float(row[name]), name)
+        self.assertIn("sound", self.run_vmech("replay", "hand.mcap", "--audit").stdout)
+
+    def test_an_old_recording_is_not_written_over(self):
+        (self.folder / "hand.csv").write_text("precious", encoding="utf-8")
+        error = self.hold("crank", "--seconds", 0.1, "--record", "hand.csv", code=2).stderr
+        self.assertIn("--force", error)
+        self.assertEqual((self.folder / "hand.csv").read_text(encoding="utf-8"), "precious")
+        self.hold("crank", "--seconds", 0.1, "--record", "hand.csv", "--force")
+        self.run_vmech("replay", "hand.csv", "--record", "hand.csv", "--force", code=2)
+        self.run_vmech("replay", "hand.csv", "--audit")
+
+    def test_a_full_disk_ends_the_session_at_once(self):
+        error = self.hold("crank", "--seconds", 1e6, "--record", "/dev/full", code=2).stderr
+        self.assertIn("No space left on device", error)
+
+    def test_a_killed_session_leaves_all_but_its_last_second(self):
+        for name in ("hand.csv", "hand.mcap"):
+            with self.subTest(name=name):
+                command = [VMECH, "haptic", EXAMPLES / "crank.yaml", "--seconds", "1000",
+                           "--record", name, "--quiet"]
+                with subprocess.Popen(command, cwd=self.folder) as session:
+                    deadline = time.monotonic() + 60
+                    while time.monotonic() < deadline:
+                        time.sleep(0.1)
+                        file = self.folder / name
+                        if file.exists() and file.stat().st_size > 3_000_000:
+                            break
+                    session.kill()
+                report = self.run_vmech("replay", name, "--audit").stdout
+                self.assertIn("cut short", report)
+                self.assertIn("verdict: sound", report)
 
     def test_recorded_hand_moves_a_study(self):
         self.hold("slider-crank", "--seconds", 1, "--record", "hand.csv", "--quiet")

@@ -9,6 +9,7 @@
 #include "vmech/hw_interface/loop/arm_torques.h"
 #include "vmech/hw_interface/rendering/coupled_tick.h"
 #include "vmech/hw_interface/rendering/mechanism_tick.h"
+#include "vmech/hw_interface/rendering/registration.h"
 #include "vmech/hw_interface/safety/safety_filter.h"
 #include "vmech/hw_interface/screen/shown_tick.h"
 

@@ -7,6 +7,7 @@
 #include "hw_interface/point_master.h"
 #include "support/temp_folder.h"
 #include "vmech/hw_interface/masters/simulated_master.h"
+#include "vmech/hw_interface/recording/recording_file.h"
 
 namespace vmech {
 namespace {

@@ -1,4 +1,4 @@
-#include "vmech/hw_interface/rendering/tick.h"
+#include "vmech/hw_interface/rendering/registration.h"
 
 #include "vmech/base/screw_algebra.h"
 

@@ -1,0 +1,355 @@
+#include "vmech/hw_interface/audit/audit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "vmech/base/rotation_error.h"
+#include "vmech/base/screw_algebra.h"
+#include "vmech/dynamics/in_hand/passive_joints.h"
+#include "vmech/dynamics/in_hand/virtual_coupling.h"
+#include "vmech/dynamics/reactions/joint_wrenches.h"
+#include "vmech/dynamics/rigid_body/newton_euler.h"
+#include "vmech/hw_interface/audit/promise.h"
+#include "vmech/hw_interface/audit/recorded_tree.h"
+#include "vmech/kinematics/loops/loops.h"
+#include "vmech/kinematics/tree/forward_kinematics.h"
+#include "vmech/mechanisms/freedoms.h"
+
+namespace vmech {
+namespace {
+
+constexpr double kExact = 1e-9;       // m, rad and shares: what rounding and printing leave
+constexpr double kNewton = 0.05;      // of the largest force: a step of the period is no limit
+constexpr double kConstraint = 1e-6;  // of the largest wrench
+constexpr double kEnergyGain = 0.01;  // of the hand's work
+
+/// The mechanism in one tick.
+struct MechanismState {
+  explicit MechanismState(const KinematicTree& tree)
+      : ws(tree), inertias(tree), joints(tree.mechanism.joints.size()) {
+    SetGravity(tree.mechanism.gravity_W, &ws);
+  }
+
+  void Set(const KinematicTree& tree, const TickPicture& picture) {
+    ForwardKinematics(tree, picture.q.data(), &ws);
+    ForwardVelocities(tree, picture.v.data(), &ws);
+    LoopErrors(tree, &ws);
+    BodyInertias(tree, ws, &inertias);
+    JointFrames(tree, ws, &joints);
+    closure = LargestLoopError(tree, ws);
+    kinetic = KineticEnergy(tree, inertias, ws);
+    weight = WeightEnergy(tree, inertias);
+    momenta.clear();
+    for (size_t i = 0; i < ws.nodes.size(); ++i) {
+      momenta.push_back(i == 0 ? Screw{} : inertias.bodies[i] * ws.nodes[i].V);
+    }
+  }
+
+  TreeWorkspace<double> ws;
+  TreeInertias<double> inertias;
+  std::vector<JointState<double>> joints;
+  std::vector<Screw> momenta;  // of the nodes, about the reference point; node i at i + 1
+  double closure = 0, kinetic = 0, weight = 0;
+};
+
+class Judgement {
+ public:
+  Judgement(std::string what, double bound, std::string unit)
+      : finding_{std::move(what), 0, bound, std::move(unit), 0} {}
+  /// A number that is none is the worst of all.
+  void Add(double value, std::uint64_t tick) {
+    if (value <= finding_.worst) return;
+    if (std::isnan(finding_.worst)) return;
+    finding_.worst = value;
+    finding_.tick = tick;
+  }
+  const AuditFinding& finding() const { return finding_; }
+
+ private:
+  AuditFinding finding_;
+};
+
+double Distance(const Posed& A, const Posed& B) {
+  return HandError(A, B).cwiseAbs().maxCoeff();
+}
+
+/// Forces, and moments over a length.
+double Size(const Screw& W, double length) {
+  return std::max(Length(W.linear), Length(W.angular) / length);
+}
+
+bool HasLimits(const Joint& joint) {
+  const auto finite = [](double x) { return std::isfinite(x); };
+  return std::any_of(joint.lower.begin(), joint.lower.end(), finite) ||
+         std::any_of(joint.upper.begin(), joint.upper.end(), finite);
+}
+
+/// Nothing acts along its freedoms but what the constraints do.
+bool IsBare(const Joint& joint) {
+  return std::none_of(joint.passive.begin(), joint.passive.end(),
+                      [](const Passive& passive) { return HasPassive(passive); }) &&
+         !HasLimits(joint);
+}
+
+}  // namespace
+
+struct RecordingAudit::Parts {
+  explicit Parts(const RecordingHeader& header)
+      : held(header),
+        promise(PromiseOf(header)),
+        period(header.period),
+        coupling(promise.coupling, held.grasp.kind, header.period),
+        passive(held.tree),
+        before(held.tree),
+        now(held.tree),
+        net(held.tree.nodes.size() + 1),
+        loops("loops of the mechanism, closed to", held.tree.mechanism.tolerance, "-"),
+        grasp("grasp frame from the coordinates, off by", kExact, "m, rad"),
+        hand("hand in the world from the sample, off by", kExact, "m, rad"),
+        stored("stored energy from q and v, off by", kExact, "-"),
+        wanted("wrench from the mechanism to the safety filter, off by", kExact, "-"),
+        sent("wrench from the filter to the device, off by", kExact, "-"),
+        free("constraints along free motions, share of the largest wrench", kConstraint, "-"),
+        newton("force balance of every link, share of the largest", kNewton, "-") {}
+
+  void Take(const TickRecord& tick);
+  void JudgePose(const TickRecord& tick);
+  void JudgeStoredEnergy(const TickRecord& tick);
+  void JudgeWrenches(const TickRecord& tick);
+  void JudgeJoints(const TickRecord& tick);
+  double AlongCutFreedoms(int joint, const Wrenchd& w) const;
+  void JudgeLinks(const TickRecord& tick, const MechanismState& at);
+  void Balance(const TickRecord& tick);
+
+  RecordedTree held;
+  SessionPromise promise;
+  double period;
+  VirtualCoupling coupling;
+  PassiveJoints passive;
+  MechanismState before, now;
+  std::vector<Screw> net;  // on every node; node i at i + 1
+  Judgement loops, grasp, hand, stored, wanted, sent, free, newton;
+  EnergyBalance energy;
+  double joint_work = 0;  // of this tick [J]
+  double first_kinetic = 0, first_weight = 0;
+  double largest_force = 0;
+  Posed X_WG_before;
+  std::uint64_t ticks = 0;
+  bool started = false, follows = false;
+};
+
+/// Before the first sample there is no mechanism in hand.
+void RecordingAudit::Parts::Take(const TickRecord& tick) {
+  if (!started && tick.io != IoStatus::kOk) {
+    ++ticks;
+    return;
+  }
+  now.Set(held.tree, tick.picture);
+  JudgePose(tick);
+  JudgeStoredEnergy(tick);
+  JudgeWrenches(tick);
+  if (started) {
+    JudgeJoints(tick);
+    Balance(tick);
+  } else {
+    first_kinetic = now.kinetic;
+    first_weight = now.weight;
+  }
+  started = true;
+  X_WG_before = tick.picture.X_WG;
+  std::swap(before, now);
+  ++ticks;
+}
+
+void RecordingAudit::Parts::JudgePose(const TickRecord& tick) {
+  const TickPicture& picture = tick.picture;
+  loops.Add(now.closure, ticks);
+  if (!held.regrasps) {
+    const Posed X_WG = PoseInWorld(now.ws, held.grasp.node, held.grasp.X_BG);
+    grasp.Add(Distance(X_WG, picture.X_WG), ticks);
+  }
+  const Posed& X_DH = tick.observed ? tick.hand.X_DH : tick.state.X_DH;
+  hand.Add(Distance(tick.registration.HandInWorld(X_DH), picture.X_WH), ticks);
+}
+
+void RecordingAudit::Parts::JudgeStoredEnergy(const TickRecord& tick) {
+  if (!promise.known || held.regrasps) return;
+  const double springs = passive.Energy(tick.picture.q);
+  double own = 0;
+  if (promise.paper) {
+    const Vector6d e1 = HandError(tick.picture.X_WG, tick.picture.X_WH);
+    own = promise.inertia * now.kinetic + now.weight + springs +
+          0.5 * e1.dot(promise.coupling.stiffness.cwiseProduct(e1));
+  } else {
+    coupling.Stretch(FrameOf(tick.picture.X_WG), {FrameOf(tick.picture.X_WH), {}});
+    own = promise.scale * (now.kinetic + now.weight + springs + coupling.energy());
+  }
+  const double size = std::abs(now.kinetic) + std::abs(now.weight) + std::abs(own);
+  stored.Add(std::abs(own - tick.stored_energy) / std::max(size, 1e-6), ticks);
+}
+
+void RecordingAudit::Parts::JudgeWrenches(const TickRecord& tick) {
+  const TickPicture& picture = tick.picture;
+  if (promise.known && !held.regrasps) {
+    const Vector6d F_W = -promise.scale * (picture.dynamic + picture.constraint);
+    const Matrix3d R_DW = tick.registration.X_WD.R.transpose();
+    Vector6d F_D;
+    F_D << R_DW * F_W.head<3>(), R_DW * F_W.tail<3>();
+    const double off = (F_D - tick.wanted_F_Ho_D).cwiseAbs().maxCoeff();
+    wanted.Add(off / std::max(1.0, F_D.cwiseAbs().maxCoeff()), ticks);
+  }
+  if (tick.stages != 0 || tick.off != ForceOff::kNone) return;
+  sent.Add((tick.sent_F_Ho_D - tick.wanted_F_Ho_D).cwiseAbs().maxCoeff(), ticks);
+}
+
+/// Along the freedoms of a cut joint, which the tree does not have.
+double RecordingAudit::Parts::AlongCutFreedoms(int j, const Wrenchd& w) const {
+  const Joint& joint = held.tree.mechanism.joints[j];
+  if (joint.type == JointType::kScrew) {
+    return std::abs(joint.pitch * w.force.z() + w.moment.z()) / held.tree.length;
+  }
+  if (joint.type == JointType::kUniversal) return 0;
+  double most = 0;
+  const std::array<bool, 6>& free_axes = FreedomsOfType(joint.type).free;
+  for (int i = 0; i < 3; ++i) {
+    if (free_axes[i]) most = std::max(most, std::abs(w.force[i]));
+    if (free_axes[3 + i]) most = std::max(most, std::abs(w.moment[i]) / held.tree.length);
+  }
+  return most;
+}
+
+/// The wrenches are those of the step that led here: in the paper's way at this pose, with the
+/// virtual coupling at that where the step began.
+void RecordingAudit::Parts::JudgeJoints(const TickRecord& tick) {
+  const KinematicTree& tree = held.tree;
+  const MechanismState& at = promise.paper ? now : before;
+  std::fill(net.begin(), net.end(), Screw{});
+  double most_along = 0;
+  joint_work = 0;
+  std::vector<Screw> wrenches(tick.picture.joints.size());
+  for (size_t j = 0; j < wrenches.size(); ++j) {
+    const Joint& joint = tree.mechanism.joints[j];
+    const Screw W = WrenchFrom(at.joints[j].F, tick.picture.joints[j]);
+    wrenches[j] = W;
+    largest_force = std::max(largest_force, Size(W, tree.length));
+    const JointPlacement& place = tree.placements[j];
+    net[place.second_node + 1] += W;
+    net[place.first_node + 1] -= W;
+    if (place.tree_node < 0) {
+      const double along = AlongCutFreedoms(static_cast<int>(j), tick.picture.joints[j]);
+      most_along = std::max(most_along, along);
+      energy.constraint += period * along;
+    }
+    (void)joint;
+  }
+  for (const TreeNode& node : tree.nodes) {
+    if (node.v < 0) continue;
+    const double sign = node.reversed ? -1 : 1;
+    const bool bare = IsBare(tree.mechanism.joints[node.joint]);
+    for (int i = 0; i < VelocitiesOf(node.motion); ++i) {
+      const double along = sign * Power(wrenches[node.joint], at.ws.S[node.v + i]);
+      const double work = period * along * tick.picture.v[node.v + i];
+      joint_work += work;
+      if (!bare) continue;
+      const bool slides = node.motion == NodeMotion::kPrismatic;
+      most_along = std::max(most_along, std::abs(along) / (slides ? 1 : tree.length));
+      energy.constraint += std::abs(work);
+    }
+  }
+  free.Add(most_along / std::max(largest_force, 1e-3), ticks);
+  JudgeLinks(tick, at);
+}
+
+/// dh/dt = net wrench, for every link with mass.
+void RecordingAudit::Parts::JudgeLinks(const TickRecord& tick, const MechanismState& at) {
+  if (promise.paper || held.regrasps) return;
+  const KinematicTree& tree = held.tree;
+  const Vector3d p_Go = X_WG_before.p - tree.reference;
+  net[held.grasp.node + 1] += WrenchAt(Double4Of(p_Go), Double4Of(tick.picture.dynamic.head<3>()),
+                                       Double4Of(tick.picture.dynamic.tail<3>()));
+  double most = 0;
+  for (size_t i = 0; i < tree.nodes.size(); ++i) {
+    const ScrewInertia& body = at.inertias.bodies[i + 1];
+    const Double4 g = Double4Of(tree.mechanism.gravity_W);
+    const Screw weight{body.mass * g, Cross(body.moment, g)};
+    const Screw rate = (1 / period) * (now.momenta[i + 1] - before.momenta[i + 1]);
+    most = std::max(most, Size(rate - net[i + 1] - weight, tree.length));
+    largest_force = std::max(largest_force, Size(weight, tree.length));
+  }
+  newton.Add(most / std::max(largest_force, 1e-3), ticks);
+}
+
+void RecordingAudit::Parts::Balance(const TickRecord& tick) {
+  const Vector6d way = HandError(X_WG_before, tick.picture.X_WG);
+  const double work = tick.picture.dynamic.dot(way);
+  energy.hand += work;
+  energy.throughput += std::abs(work);
+  energy.joints -= joint_work;
+  const double share = promise.paper ? promise.inertia : 1;
+  energy.kinetic = share * (now.kinetic - first_kinetic);
+  energy.weight = now.weight - first_weight;
+  energy.lost = energy.hand - energy.kinetic - energy.weight - energy.joints;
+  energy.gained = std::max(energy.gained, -energy.lost);
+}
+
+RecordingAudit::RecordingAudit(const RecordingHeader& header)
+    : parts_(std::make_unique<Parts>(header)) {}
+
+RecordingAudit::~RecordingAudit() = default;
+
+void RecordingAudit::Take(const TickRecord& tick) {
+  parts_->Take(tick);
+}
+
+AuditReport RecordingAudit::Report() const {
+  const Parts& p = *parts_;
+  AuditReport report;
+  report.ticks = p.ticks;
+  report.energy = p.energy;
+  report.findings = {p.loops.finding(), p.hand.finding(), p.free.finding(), p.sent.finding()};
+  if (p.held.regrasps) {
+    report.left_out = "grasp frame, stored energy and links: the hand takes hold anew";
+    return report;
+  }
+  report.findings.push_back(p.grasp.finding());
+  if (p.promise.known) {
+    report.findings.push_back(p.stored.finding());
+    report.findings.push_back(p.wanted.finding());
+  } else {
+    report.left_out = "stored energy and wanted wrench: the recording does not say what was felt";
+  }
+  if (!p.promise.paper) report.findings.push_back(p.newton.finding());
+  const double share = p.energy.gained / std::max(p.energy.throughput, 1e-6);
+  report.findings.push_back(
+      {"energy from nowhere, share of the hand's work", share, kEnergyGain, "-", p.ticks});
+  return report;
+}
+
+bool AuditReport::sound() const {
+  return std::all_of(findings.begin(), findings.end(),
+                     [](const AuditFinding& finding) { return finding.sound(); });
+}
+
+std::string AuditReport::Text() const {
+  std::string text = fmt::format("audit of {} ticks\n", ticks);
+  for (const AuditFinding& f : findings) {
+    text += fmt::format("  {:<60} {:>9.2g} {:<6} at most {:g}{}\n", f.what, f.worst,
+                        f.unit == "-" ? "" : f.unit, f.bound,
+                        f.sound() ? "" : fmt::format("   NOT SOUND, tick {}", f.tick));
+  }
+  text += fmt::format(
+      "  energy: the hand did {:.4g} J on the mechanism; {:.4g} J went into motion, {:.4g} J into "
+      "height, {:.4g} J into springs, friction and limits of joints, {:.4g} J were lost in time "
+      "steps; constraints did {:.2g} J along free motions\n",
+      energy.hand, energy.kinetic, energy.weight, energy.joints, energy.lost, energy.constraint);
+  if (!left_out.empty()) text += fmt::format("  not judged: {}\n", left_out);
+  text += sound() ? "verdict: sound, every number agrees with the mechanism\n"
+                  : "verdict: not sound, these numbers are not those of this mechanism\n";
+  return text;
+}
+
+}  // namespace vmech

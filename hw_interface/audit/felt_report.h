@@ -1,0 +1,39 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "vmech/hw_interface/safety/safety_filter.h"
+
+namespace vmech {
+
+/// A figure that was fitted to a session.
+struct Felt {
+  double value = 0;
+  double error = 0;     ///< standard error
+  double promised = 0;  ///< what the session was set up for
+  bool known = false;   ///< false: the session has not shown it
+};
+
+/// What a session tells of itself.
+struct FeltReport {
+  std::uint64_t ticks = 0;
+  double period = 1e-3;
+  Felt inertia;               ///< felt along the free motion, over the mechanism's own [-]
+  Felt weight;                ///< the same of its weight [-]
+  Felt damping;               ///< felt along the free motion beyond the mechanism's own [N s/m]
+  Felt stiffness;             ///< against the constraints [N/m]
+  Felt resistance;            ///< damping against the constraints [N s/m]
+  Felt delay;                 ///< from a command to its wrench at the handle [s]
+  double noise = 0;           ///< of the force sent: RMS of what is new in every tick [N]
+  double largest_change = 0;  ///< of the force sent, from a tick to the next [N]
+  static constexpr int kCauses = 16;
+  std::array<std::uint64_t, kCauses> off{};           ///< ticks without force, by ForceOff
+  std::array<std::uint64_t, kSafetyStages> stages{};  ///< ticks in which each changed the force
+
+  std::string Text() const;     ///< figures, each beside what was promised
+  std::string Verdict() const;  ///< a sentence or two
+};
+
+}  // namespace vmech

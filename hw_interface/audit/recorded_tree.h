@@ -1,0 +1,26 @@
+#pragma once
+
+#include "vmech/hw_interface/recording/recording.h"
+#include "vmech/kinematics/tree/grasp_frame.h"
+#include "vmech/kinematics/tree/kinematic_tree.h"
+
+namespace vmech {
+
+/// The mechanism of a recording, as the session had it.
+struct RecordedTree {
+  /// @throws std::invalid_argument if the recording does not hold its mechanism, names no grasp of
+  /// it, or has other coordinates; FileErrors if that mechanism cannot be read.
+  explicit RecordedTree(const RecordingHeader& header);
+  /// Of a session that runs here.
+  RecordedTree(const KinematicTree& held, int grasp, bool regrasps);
+
+  KinematicTree tree;
+  int grasp_index = -1;
+  GraspFrame grasp;
+  bool regrasps = false;  ///< the hand lets go and takes hold elsewhere, as with a gripper
+};
+
+/// What stands for a mechanism in the recordings of its sessions.
+RecordedMechanism RecordedMechanismOf(const KinematicTree& tree);
+
+}  // namespace vmech

@@ -1,0 +1,204 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <concepts>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vmech/hw_interface/recording/recording.h"
+
+namespace vmech {
+
+/// Names of numbers that stand for something: the number is the index. Whatever has no name is
+/// written, and may be read, as its number.
+using ValueNames = std::vector<std::string>;
+const ValueNames& IoNames();
+const ValueNames& ForceOffNames();
+/// Of bits of SafetyStage together: "none", "ramped", "damped", "ramped+damped", ...
+const ValueNames& StageNames();
+
+/// Visits every column of a tick: the table is stated once, for all formats and both directions.
+///
+///   visit(name, value)                 a number; `name` is a function that makes the name
+///   visit.Named(name, names, value)    a number that stands for one of the names
+///
+/// `Tick` is a TickRecord, const or not.
+template <typename Visitor, typename Tick>
+class ColumnVisit {
+ public:
+  ColumnVisit(const RecordingHeader& header, Visitor* visit, Tick* tick)
+      : header_(header), visit_(*visit), tick_(*tick) {}
+
+  void All() {
+    Sample();
+    Loop();
+    if (header_.format > 1) Hand();
+    if (header_.format > 1) Mechanism();
+    for (size_t i = 0; i < header_.channels.size(); ++i) Channel(i);
+  }
+
+ private:
+  template <typename Value>
+  void One(std::string_view name, Value& value) {
+    visit_([&] { return std::string(name); }, value);
+  }
+  template <typename Vector>
+  void Six(std::string_view name, Vector& vector) {
+    for (int i = 0; i < 6; ++i) visit_([&] { return fmt::format("{}_{}", name, i); }, vector[i]);
+  }
+  template <typename Vector>
+  void Point(std::string_view name, Vector& p) {
+    for (int i = 0; i < 3; ++i) {
+      visit_([&] { return fmt::format("{}_{}", name, "xyz"[i]); }, p[i]);
+    }
+  }
+  /// Nine numbers: they come back to the last bit.
+  template <typename Matrix>
+  void Exactly(std::string_view name, Matrix& R) {
+    for (int i = 0; i < 9; ++i) {
+      visit_([&] { return fmt::format("{}_{}{}", name, "xyz"[i / 3], "xyz"[i % 3]); },
+             R(i / 3, i % 3));
+    }
+  }
+  /// A unit quaternion.
+  template <typename Matrix>
+  void Turn(std::string_view name, Matrix& R) {
+    Eigen::Quaterniond turn(R);
+    double wxyz[4] = {turn.w(), turn.x(), turn.y(), turn.z()};
+    for (int i = 0; i < 4; ++i) {
+      visit_([&] { return fmt::format("{}_{}", name, "wxyz"[i]); }, wxyz[i]);
+    }
+    if constexpr (!std::is_const_v<Tick>) {
+      turn = Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized();
+      R = turn.toRotationMatrix();
+    }
+  }
+  template <typename PoseType>
+  void SevenOf(const std::string& name, PoseType& X) {
+    Point(name + "_p", X.p);
+    Turn(name + "_q", X.R);
+  }
+
+  void Sample() {
+    auto& state = tick_.state;
+    One("sequence", state.sequence);
+    One("device_time_ns", state.device_time_ns);
+    One("host_time_ns", state.host_time_ns);
+    One("valid", state.valid);
+    One("buttons", state.buttons);
+    One("dead_man", state.dead_man);
+    One("emergency_stop", state.emergency_stop);
+    One("command_echo", state.command_echo);
+    Point("p", state.X_DH.p);
+    if (header_.format > 1) {
+      Exactly("R", state.X_DH.R);
+    } else {
+      Turn("orientation", state.X_DH.R);
+    }
+    Six("V_DH", state.V_DH);
+    Six("applied", state.applied_F_Ho_D);
+    for (int i = 0; i < kMaxArmJoints; ++i) {
+      visit_([&] { return fmt::format("q_{}", i); }, state.q[i]);
+    }
+    One("gripper", state.gripper_opening);
+  }
+
+  void Loop() {
+    Six("wanted", tick_.wanted_F_Ho_D);
+    Six("sent", tick_.sent_F_Ho_D);
+    visit_.Named([] { return std::string("io"); }, IoNames(), tick_.io);
+    visit_.Named([] { return std::string("off"); }, ForceOffNames(), tick_.off);
+    visit_.Named([] { return std::string("stages"); }, StageNames(), tick_.stages);
+    One("energy", tick_.energy);
+    One("late_ns", tick_.late_ns);
+    One("compute_ns", tick_.compute_ns);
+    One("skipped", tick_.skipped);
+  }
+
+  void Hand() {
+    One("observed", tick_.observed);
+    Point("hand_p", tick_.hand.X_DH.p);
+    Exactly("hand_R", tick_.hand.X_DH.R);
+    Six("hand_V", tick_.hand.V_DH);
+    SevenOf("X_WD", tick_.registration.X_WD);
+    Turn("R_HK", tick_.registration.R_HK);
+  }
+
+  void Mechanism() {
+    auto& picture = tick_.picture;
+    One("room_force", tick_.room.force);
+    One("room_moment", tick_.room.moment);
+    One("room_together", tick_.room.together);
+    One("stored_energy", tick_.stored_energy);
+    One("holds", picture.holds);
+    SevenOf("X_WH", picture.X_WH);
+    SevenOf("X_WG", picture.X_WG);
+    Six("dynamic", picture.dynamic);
+    Six("constraint", picture.constraint);
+    const RecordedMechanism& names = header_.mechanism;
+    Several("coordinate", names.coordinates, picture.q);
+    Several("velocity", names.velocities, picture.v);
+    for (size_t j = 0; j < names.joints.size(); ++j) {
+      Three("force", "joint " + names.joints[j], picture.joints[j].force);
+      Three("moment", "joint " + names.joints[j], picture.joints[j].moment);
+    }
+  }
+
+  template <typename Vector>
+  void Several(const char* what, const std::vector<std::string>& names, Vector& values) {
+    for (size_t i = 0; i < names.size(); ++i) {
+      visit_([&] { return fmt::format("{} {}", what, names[i]); },
+             values[static_cast<Eigen::Index>(i)]);
+    }
+  }
+  template <typename Vector>
+  void Three(const char* what, const std::string& of, Vector& p) {
+    for (int i = 0; i < 3; ++i) {
+      visit_([&] { return fmt::format("{} {}_{}", of, what, "xyz"[i]); }, p[i]);
+    }
+  }
+
+  void Channel(size_t i) {
+    const auto name = [&] { return header_.channels[i]; };
+    if (!header_.states.empty() && header_.channels[i] == "state") {
+      visit_.Named(name, header_.states, tick_.channels[i]);
+    } else {
+      visit_(name, tick_.channels[i]);
+    }
+  }
+
+  const RecordingHeader& header_;
+  Visitor& visit_;
+  Tick& tick_;
+};
+
+template <typename Visitor, typename Tick>
+void VisitColumns(const RecordingHeader& header, Visitor* visit, Tick* tick) {
+  ColumnVisit<Visitor, Tick>(header, visit, tick).All();
+}
+
+/// What a column holds.
+enum class CellKind { kNumber, kInteger, kFlag, kName };
+struct Column {
+  std::string name;
+  CellKind kind;
+  const ValueNames* names = nullptr;  ///< of kName: what it may be
+};
+/// Of a recording: one per cell of a row. Refers to the header.
+std::vector<Column> ColumnsOf(const RecordingHeader& header);
+
+/// A row of a table, "0.1,ok,..", and the members of an object, "\"p_x\":0.1,\"io\":\"ok\",..".
+void AppendRow(const RecordingHeader& header, const TickRecord& tick, std::string* text);
+void AppendMembers(const RecordingHeader& header, const std::vector<Column>& columns,
+                   const TickRecord& tick, std::string* text);
+/// And back. `tick` is an EmptyTick or any other of this recording.
+/// @throws std::runtime_error naming the column and what is wrong there.
+void ReadRow(const RecordingHeader& header, const std::vector<Column>& columns,
+             std::string_view row, TickRecord* tick);
+void ReadMembers(const RecordingHeader& header, const std::vector<Column>& columns,
+                 std::string_view members, TickRecord* tick);
+
+}  // namespace vmech

@@ -1,0 +1,42 @@
+#include "vmech/hw_interface/recording/recording.h"
+
+#include <charconv>
+#include <system_error>
+
+#include "vmech/base/screw_algebra.h"
+
+namespace vmech {
+
+RecordedHand RecordedHand::Of(const MovingFrame& hand_D) noexcept {
+  return {PoseOf(hand_D.X), Vector6Of(hand_D.V)};
+}
+
+MovingFrame RecordedHand::Moving() const noexcept {
+  return {FrameOf(X_DH), ScrewOf(V_DH)};
+}
+
+std::string RecordingHeader::Note(std::string_view wanted) const {
+  for (const auto& [key, text] : notes) {
+    if (key == wanted) return text;
+  }
+  return {};
+}
+
+double RecordingHeader::Number(std::string_view wanted, double otherwise) const {
+  const std::string text = Note(wanted);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool sound = error == std::errc{} && end == text.data() + text.size() && !text.empty();
+  return sound ? value : otherwise;
+}
+
+TickRecord RecordingHeader::EmptyTick() const {
+  TickRecord tick;
+  tick.channels.resize(channels.size());
+  tick.picture.q.setZero(static_cast<Eigen::Index>(mechanism.coordinates.size()));
+  tick.picture.v.setZero(static_cast<Eigen::Index>(mechanism.velocities.size()));
+  tick.picture.joints.resize(mechanism.joints.size());
+  return tick;
+}
+
+}  // namespace vmech

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "vmech/hw_interface/rendering/registration.h"
+#include "vmech/hw_interface/rendering/tick_picture.h"
+#include "vmech/hw_interface/safety/safety_filter.h"
+
+namespace vmech {
+
+/// The hand as an observer knew it, in D.
+struct RecordedHand {
+  Posed X_DH;
+  Vector6d V_DH = Vector6d::Zero();  ///< [v; w] of Ho and H, axes of D
+
+  static RecordedHand Of(const MovingFrame& hand_D) noexcept;
+  MovingFrame Moving() const noexcept;
+};
+
+/// Everything about one tick of a haptic loop. What has no fixed size is sized once, from then on a
+/// loop copies it without allocation.
+struct TickRecord {
+  MasterState state;
+  Vector6d wanted_F_Ho_D = Vector6d::Zero();  ///< of the virtual mechanism
+  Vector6d sent_F_Ho_D = Vector6d::Zero();    ///< after the safety filter
+  IoStatus io = IoStatus::kOk;
+  ForceOff off = ForceOff::kNotActive;
+  std::uint32_t stages = 0;      ///< bits of SafetyStage
+  double energy = 0;             ///< the passivity observer's [J]
+  std::int32_t late_ns = 0;      ///< wake-up after its time
+  std::int32_t compute_ns = 0;   ///< from the wake-up to the command's write
+  std::int32_t skipped = 0;      ///< slots missed before this tick
+  bool observed = false;         ///< the tick went by `hand` in place of the sample
+  RecordedHand hand;             ///< of an observer
+  Registration registration;     ///< of the handle in the world
+  WrenchLimit room;              ///< what the device could exert at this posture
+  double stored_energy = 0;      ///< that the virtual side says it has, see passivity.h [J]
+  TickPicture picture;           ///< the mechanism
+  std::vector<double> channels;  ///< of the tick, named in the recording
+};
+
+/// What a session was made of, in words without spaces as keys: mechanism, grasp, ...
+using RecordingNotes = std::vector<std::pair<std::string, std::string>>;
+
+/// The mechanism of a session, for those who read the recording alone.
+struct RecordedMechanism {
+  std::string text;  ///< a mechanism file (WriteMechanism); empty: not known
+  // Names of its numbers in every tick; empty: they are numbered.
+  std::vector<std::string> coordinates, velocities, joints;
+};
+
+/// The format that is written; format 1 is read too.
+inline constexpr int kRecordingFormat = 2;
+
+/// What a recording says of all of its ticks.
+struct RecordingHeader {
+  std::string device;
+  double period = 1e-3;               ///< [s]
+  std::vector<std::string> channels;  ///< names of a tick's
+  double delay = 0;                   ///< of the device [s]
+  HandlePhysics linear, angular;      ///< of the device
+  RecordingNotes notes;
+  RecordedMechanism mechanism;
+  std::vector<std::string> states;  ///< names of the values of the channel "state"; or none
+  int format = kRecordingFormat;
+
+  /// Of the first note with the wanted key; empty if there is none.
+  std::string Note(std::string_view wanted) const;
+  /// A note that is a number; a value of its own where there is none.
+  double Number(std::string_view wanted, double otherwise) const;
+  /// A record with everything sized as the names say.
+  TickRecord EmptyTick() const;
+};
+
+/// A recorded session.
+struct Recording : RecordingHeader {
+  std::vector<TickRecord> ticks;
+  bool complete = true;    ///< false: it ends without its last line, as after a kill
+  std::uint64_t lost = 0;  ///< ticks that are not in it, since the disk was too slow
+};
+
+}  // namespace vmech

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "vmech/base/screw.h"
+
+namespace vmech {
+
+/// How the master's handle is laid over the mechanism's world W: D is placed by X_WD, and the
+/// hand's frame is the handle turned by R_HK, so that it can coincide with a grasp frame of any
+/// orientation.
+///
+///   X_WK = X_WD X_DH R_HK,   F_Ho_D = R_WD' F_Ko_W   (Ko = Ho)
+struct Registration {
+  Posed X_WD;
+  Matrix3d R_HK = Matrix3d::Identity();
+
+  Posed HandInWorld(const Posed& X_DH) const noexcept;
+  /// The hand, of a handle that moves in D.
+  void TakeHandInWorld(const MovingFrame& handle, MovingFrame* hand) const noexcept;
+};
+
+/// The registration that puts the hand where the grasp frame is, with the device's axes along R_WD:
+/// a grasp without a jump.
+Registration GraspedAt(const Matrix3d& R_WD, const Posed& X_DH, const Posed& X_WG) noexcept;
+
+}  // namespace vmech
