@@ -38,7 +38,7 @@ class SessionRecording {
   PathLock lock_;
   RecordedTree held_;
   FeltFit felt_;
-  std::optional<Recorder> recorder_;
+  std::optional<TickRecorder> recorder_;
 };
 
 }  // namespace vmech

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -243,8 +244,8 @@ void Runner::GraspOrLetGo() noexcept {
   safety_.ForgetStoredEnergy();
   if (!closes) return;
   ++summary_.grasps;
-  const MovingFrame* observed = ObservedHand();
-  const Posed X_DH = observed != nullptr ? PoseOf(observed->X) : state_.X_DH;
+  const std::optional<MovingFrame> observed = ObservedHand();
+  const Posed X_DH = observed ? PoseOf(observed->X) : state_.X_DH;
   if (!tick_->GraspAt(registration_.HandInWorld(X_DH))) {
     safety_.Restart();
     registration_ = GraspedAt(options_.R_WD, state_.X_DH, tick_->GraspFrame());

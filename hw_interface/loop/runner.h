@@ -11,7 +11,7 @@
 #include "vmech/hw_interface/loop/histogram.h"
 #include "vmech/hw_interface/loop/loop_clock.h"
 #include "vmech/hw_interface/loop/realtime.h"
-#include "vmech/hw_interface/recording/recorder.h"
+#include "vmech/hw_interface/recording/tick_recorder.h"
 #include "vmech/hw_interface/rendering/tick.h"
 
 namespace vmech {
@@ -101,7 +101,7 @@ class Runner {
   /// What every recording of this run begins with.
   RecordingHeader Header() const;
   /// Gets every tick of the run from now on; null: nobody.
-  void SetRecorder(Recorder* recorder) noexcept { recorder_ = recorder; }
+  void SetRecorder(TickRecorder* recorder) noexcept { recorder_ = recorder; }
 
  private:
   bool IsOver() const noexcept;
@@ -134,7 +134,7 @@ class Runner {
   MasterState state_;
   std::vector<std::string> channels_;
   std::vector<TickRecord> kept_;  // a ring
-  Recorder* recorder_ = nullptr;
+  TickRecorder* recorder_ = nullptr;
   RunSummary summary_;
   LiveStatus live_;
   std::uint64_t slots_ = 0;  // to run; 0: no end

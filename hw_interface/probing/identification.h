@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vmech/hw_interface/loop/recording.h"
+#include "vmech/hw_interface/recording/recording.h"
 
 namespace vmech {
 

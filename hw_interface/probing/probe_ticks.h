@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "vmech/hw_interface/rendering/tick.h"
+#include "vmech/hw_interface/safety/safety_filter.h"
 
 namespace vmech {
 

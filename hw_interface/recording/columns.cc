@@ -236,8 +236,8 @@ const ValueNames& ForceOffNames() {
 
 const ValueNames& StageNames() {
   static const ValueNames names = [] {
-    constexpr std::array<const char*, kSafetyStages> kWords{"ramped", "damped", "clamped",
-                                                            "slewed"};
+    constexpr std::array<const char*, kSafetyStages> kWords{"ramped", "damped", "clamped", "slewed",
+                                                            "braked"};
     ValueNames all;
     for (unsigned bits = 0; bits < 1u << kSafetyStages; ++bits) {
       std::string words;

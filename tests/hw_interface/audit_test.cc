@@ -25,6 +25,7 @@
 #include "vmech/hw_interface/recording/columns.h"
 #include "vmech/hw_interface/rendering/coupled_tick.h"
 #include "vmech/hw_interface/rendering/coupling_choice.h"
+#include "vmech/hw_interface/rendering/paper_choice.h"
 #include "vmech/hw_interface/rendering/mechanism_tick.h"
 #include "vmech/kinematics/loops/assembled_mechanism.h"
 
@@ -43,7 +44,7 @@ SimulatedMasterOptions ArmFor(const SessionOptions& options) {
   SimulatedMasterOptions arm;
   arm.hand = ImpedanceOf(Grip::kFirm);
   arm.delay_periods = options.delay_periods;
-  const auto description = std::make_shared<const ArmDescription>(SarcosMasterArm(arm.hand.mass));
+  const auto description = std::make_shared<const ArmDescription>(SarcosMasterArm());
   arm.motion = Wander(ArmModel(description).X_DH(), 0.03, 0.1, 3);
   return arm;
 }
@@ -101,10 +102,11 @@ class Session {
     };
   }
   void MakePaper() {
-    MechanismTickOptions options;
-    options.law = ContactLawFor(master_.info(), 0);
-    options.inertia = StableInertiaShare(tree_, GraspFrameOf(tree_, grasp_), q_, master_.info());
-    promise = {true, true, 1, options.inertia, {}};
+    const PaperChoice choice = ChoosePaper({}, tree_, grasp_, q_, master_.info());
+    const MechanismTickOptions& options = choice.tick;
+    safety_ = choice.safety;
+    observer_ = choice.observer;
+    promise = {true, true, options.scale, options.inertia, {}};
     promise.coupling.stiffness = options.law.stiffness;
     tick_ = [this, options]() -> std::unique_ptr<Tick> {
       return std::make_unique<MechanismTick>(tree_, grasp_, q_, master_.info(), options);
@@ -116,6 +118,7 @@ class Session {
     options.record = true;
     options.realtime.reset();
     options.safety = safety_;
+    options.observer = observer_;
     options.mechanism = RecordedMechanismOf(tree_);
     options.notes = {{"grasp", "handle"}, {"coupling", promise.paper ? "paper" : "virtual"}};
     for (const auto& note : NotesOf(promise)) options.notes.push_back(note);
@@ -132,6 +135,7 @@ class Session {
   VectorXd q_;
   SimulatedMaster master_;
   SafetyOptions safety_;
+  HandObserverOptions observer_;
   std::function<std::unique_ptr<Tick>()> tick_;
 };
 

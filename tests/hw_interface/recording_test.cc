@@ -21,7 +21,7 @@
 #include "vmech/hw_interface/loop/replay_master.h"
 #include "vmech/hw_interface/recording/columns.h"
 #include "vmech/hw_interface/recording/mcap_records.h"
-#include "vmech/hw_interface/recording/recorder.h"
+#include "vmech/hw_interface/recording/tick_recorder.h"
 
 namespace vmech {
 namespace {
@@ -261,7 +261,7 @@ TEST_F(RecorderTest, WritesWhileTheSessionRuns) {
   for (const char* name : {"live.csv", "live.mcap"}) {
     file_ = folder_ / name;
     const int file = Open();
-    Recorder recorder(Sample(0), Options(file));
+    TickRecorder recorder(Sample(0), Options(file));
     for (int k = 0; k < 100; ++k) recorder.Take(SampleTick(k));
     size_t seen = 0;
     for (int wait = 0; wait < 500 && seen < 100; ++wait) {
@@ -281,7 +281,7 @@ TEST_F(RecorderTest, AFullDiskIsSaidAtOnce) {
   std::atomic<bool> said = false;
   RecorderOptions options = Options(file);
   options.on_failure = [&](const std::string&) { said = true; };
-  Recorder recorder(Sample(0), options);
+  TickRecorder recorder(Sample(0), options);
   for (int wait = 0; wait < 500 && !said; ++wait) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
@@ -303,7 +303,7 @@ TEST_F(RecorderTest, AFileThatCannotGrowEndsWithAWholeRow) {
   setrlimit(RLIMIT_FSIZE, &small);
   RecorderOptions options = Options(file);
   options.waits = true;
-  Recorder recorder(Sample(0), options);
+  TickRecorder recorder(Sample(0), options);
   for (int k = 0; k < 5000; ++k) recorder.Take(SampleTick(k));
   recorder.Finish();
   setrlimit(RLIMIT_FSIZE, &before);
@@ -330,7 +330,7 @@ TEST_F(RecorderTest, TheLoopNeverWaitsAndWhatIsLostIsCounted) {
   RecorderOptions options = Options(file);
   options.room = 0.1;
   options.listeners = {&slow};
-  Recorder recorder(Sample(0), options);
+  TickRecorder recorder(Sample(0), options);
   for (int k = 0; k < 1000; ++k) recorder.Take(SampleTick(k));
   slow.go = true;
   recorder.Finish();
@@ -354,7 +354,7 @@ TEST_F(RecorderTest, ALongSessionNeedsNoMoreMemoryThanAShortOne) {
   const int file = open("/dev/null", O_WRONLY);
   RecorderOptions options = Options(file);
   options.waits = true;
-  Recorder recorder(Sample(0), options);
+  TickRecorder recorder(Sample(0), options);
   const TickRecord tick = SampleTick(0);
   std::size_t early = 0;
   for (int k = 0; k < 200'000; ++k) {

@@ -34,13 +34,13 @@ struct RecorderOptions {
 /// them. The loop never waits, unless it is told to: what there is no room for is counted. Twice a
 /// second all that came is written out, so that a killed process loses at most the last second. A
 /// file that cannot be written ends with its last whole row and is not written any more.
-class Recorder {
+class TickRecorder {
  public:
   /// @throws std::invalid_argument as Validate.
-  Recorder(const RecordingHeader& header, RecorderOptions options);
-  ~Recorder();
-  Recorder(const Recorder&) = delete;
-  Recorder& operator=(const Recorder&) = delete;
+  TickRecorder(const RecordingHeader& header, RecorderOptions options);
+  ~TickRecorder();
+  TickRecorder(const TickRecorder&) = delete;
+  TickRecorder& operator=(const TickRecorder&) = delete;
 
   /// From the loop.
   void Take(const TickRecord& tick) noexcept;

@@ -1,4 +1,4 @@
-#include "vmech/hw_interface/recording/recorder.h"
+#include "vmech/hw_interface/recording/tick_recorder.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -30,7 +30,7 @@ void RecorderOptions::Validate() const {
   CheckRange("RecorderOptions", "room", room, 0.01, 100);
 }
 
-Recorder::Recorder(const RecordingHeader& header, RecorderOptions options)
+TickRecorder::TickRecorder(const RecordingHeader& header, RecorderOptions options)
     : options_(std::move(options)),
       ring_(RoomFor(options_, header.period), header.EmptyTick()),
       writer_(options_.file >= 0 ? MakeRecordingWriter(options_.name, header) : nullptr) {
@@ -38,11 +38,11 @@ Recorder::Recorder(const RecordingHeader& header, RecorderOptions options)
   thread_ = std::thread([this] { Run(); });
 }
 
-Recorder::~Recorder() {
+TickRecorder::~TickRecorder() {
   Finish();
 }
 
-void Recorder::Take(const TickRecord& tick) noexcept {
+void TickRecorder::Take(const TickRecord& tick) noexcept {
   while (!ring_.Put(tick)) {
     if (!options_.waits) {
       ++lost_;
@@ -52,13 +52,13 @@ void Recorder::Take(const TickRecord& tick) noexcept {
   }
 }
 
-void Recorder::Finish() {
+void TickRecorder::Finish() {
   if (!thread_.joinable()) return;
   finishing_ = true;
   thread_.join();
 }
 
-void Recorder::Run() {
+void TickRecorder::Run() {
   Write();
   Clock::time_point flushed = Clock::now();
   while (true) {
@@ -77,7 +77,7 @@ void Recorder::Run() {
   WriteEnd();
 }
 
-bool Recorder::TakeOne() {
+bool TickRecorder::TakeOne() {
   const TickRecord* tick = ring_.Oldest();
   if (tick == nullptr) return false;
   if (writer_) writer_->Add(*tick, &bytes_);
@@ -86,7 +86,7 @@ bool Recorder::TakeOne() {
   return true;
 }
 
-void Recorder::Write() {
+void TickRecorder::Write() {
   std::size_t done = 0;
   while (writer_ && done < bytes_.size()) {
     const ssize_t count = write(options_.file, bytes_.data() + done, bytes_.size() - done);
@@ -101,7 +101,7 @@ void Recorder::Write() {
 }
 
 /// Of the bytes `done` are in the file, which is to end where these began.
-void Recorder::Fail(int error, std::size_t done) {
+void TickRecorder::Fail(int error, std::size_t done) {
   const off_t end = lseek(options_.file, 0, SEEK_CUR);
   const bool is_cut = end >= 0 && ftruncate(options_.file, end - static_cast<off_t>(done)) == 0;
   failure_ = fmt::format("{}: {}", options_.name, std::strerror(error));
@@ -111,7 +111,7 @@ void Recorder::Fail(int error, std::size_t done) {
   if (options_.on_failure) options_.on_failure(failure_);
 }
 
-void Recorder::WriteEnd() {
+void TickRecorder::WriteEnd() {
   if (!writer_) return;
   writer_->End(lost_, &bytes_);
   Write();
