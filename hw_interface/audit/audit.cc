@@ -129,6 +129,7 @@ struct RecordingAudit::Parts {
   SessionPromise promise;
   double period;
   VirtualCoupling coupling;
+  Posed last_X_WG;
   PassiveJoints passive;
   MechanismState before, now;
   std::vector<Screw> net;  // on every node; node i at i + 1
@@ -176,18 +177,17 @@ void RecordingAudit::Parts::JudgePose(const TickRecord& tick) {
   hand.Add(Distance(tick.registration.HandInWorld(X_DH), picture.X_WH), ticks);
 }
 
+/// That of the virtual coupling, whose spring remembers where it slips. In the paper's way the share
+/// of the inertia goes with the pose, and the recording does not have it.
 void RecordingAudit::Parts::JudgeStoredEnergy(const TickRecord& tick) {
-  if (!promise.known || held.regrasps) return;
+  if (!promise.known || promise.paper || held.regrasps) return;
+  const MovingFrame hand_W{FrameOf(tick.picture.X_WH), {}};
+  coupling.Within(tick.room.Times(1 / promise.scale));
+  if (ticks > 0) coupling.Stretch(FrameOf(last_X_WG), hand_W);
+  coupling.Stretch(FrameOf(tick.picture.X_WG), hand_W);
+  last_X_WG = tick.picture.X_WG;
   const double springs = passive.Energy(tick.picture.q);
-  double own = 0;
-  if (promise.paper) {
-    const Vector6d e1 = HandError(tick.picture.X_WG, tick.picture.X_WH);
-    own = promise.inertia * now.kinetic + now.weight + springs +
-          0.5 * e1.dot(promise.coupling.stiffness.cwiseProduct(e1));
-  } else {
-    coupling.Stretch(FrameOf(tick.picture.X_WG), {FrameOf(tick.picture.X_WH), {}});
-    own = promise.scale * (now.kinetic + now.weight + springs + coupling.energy());
-  }
+  const double own = promise.scale * (now.kinetic + now.weight + springs + coupling.energy());
   const double size = std::abs(now.kinetic) + std::abs(now.weight) + std::abs(own);
   stored.Add(std::abs(own - tick.stored_energy) / std::max(size, 1e-6), ticks);
 }
