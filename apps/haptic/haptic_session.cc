@@ -57,8 +57,7 @@ std::unique_ptr<Master> MakeSimulated(const MasterRequest& request) {
   SimulatedMasterOptions options;
   options.period = 1 / request.rate;
   options.hand = ImpedanceOf(request.grip);
-  const Posed X_DH =
-      ArmModel(std::make_shared<const ArmDescription>(SarcosMasterArm(options.hand.mass))).X_DH();
+  const Posed X_DH = ArmModel(std::make_shared<const ArmDescription>(SarcosMasterArm())).X_DH();
   options.motion = request.law ? HandMotionOf(*request.law, request.end,
                                               GraspedAt(request.R_WD, X_DH, request.X_WG))
                                : Wander(X_DH, kReach, kTurn, 1);

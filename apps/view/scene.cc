@@ -5,8 +5,8 @@
 #include <optional>
 #include <utility>
 
-#include "vmech/apps/view/base64.h"
 #include "vmech/apps/view/json_text.h"
+#include "vmech/base/encoding/base64.h"
 #include "vmech/dynamics/loads/open_components.h"
 #include "vmech/dynamics/loads/pose/external_loads.h"
 #include "vmech/kinematics/loops/assembled_mechanism.h"

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kMobilityTime = 0.2;              // [s]
 constexpr double kLosing = 0.01, kGaining = 0.05;  // [s]: of trust
-constexpr double kSmoothing = 2e-3;                // [s]
+constexpr double kSmoothing = 2;                   // [periods]: of differences
 constexpr double kFinest = 1e-5;                   // [m], [rad]
 
 constexpr double kNoStop = std::numeric_limits<double>::infinity();
@@ -66,7 +66,7 @@ HandObserver::HandObserver(const HandObserverOptions& options, const DeviceInfo&
     upper_[node.v] = tree.mechanism.joints[node.joint].upper[node.freedom];
   }
   gain_ = GainsFor(options.bandwidth, period_);
-  for (int k = 0; k <= kMostPeriods; ++k) new_share_[k] = 1 - std::exp(-k * period_ / kSmoothing);
+  for (int k = 0; k <= kMostPeriods; ++k) new_share_[k] = 1 - std::exp(-k / kSmoothing);
   resolution_ = {Double4Of(Vector3d::Constant(std::max(info.linear.resolution, kFinest))),
                  Double4Of(Vector3d::Constant(std::max(info.angular.resolution, kFinest)))};
 }
@@ -83,8 +83,6 @@ void HandObserver::Update(const MasterState& state, const Vector6d& F_Ho_D, int 
   if (until_mobility_-- <= 0) FindMobility(state);
   periods = std::clamp(periods, 1, kMostPeriods);
   const double elapsed = periods * period_;
-  const double change = AtStop(state) ? -elapsed / kLosing : elapsed / kGaining;
-  trust_ = std::clamp(trust_ + change, 0.0, 1.0);
   const Screw step = HandError(X_last_, X);
   displacement_ += step;
   X_last_ = X;
@@ -103,6 +101,10 @@ void HandObserver::Update(const MasterState& state, const Vector6d& F_Ho_D, int 
   const Screw within{Clamped(ahead.linear, resolution_.linear),
                      Clamped(ahead.angular, resolution_.angular)};
   x_ = displacement_ + within;
+  const Screw beyond = ahead - within;
+  const bool strays = Power(beyond, beyond) > 0;
+  const double change = strays || AtStop(state) ? -elapsed / kLosing : elapsed / kGaining;
+  trust_ = std::clamp(trust_ + change, 0.0, 1.0);
   hand_ = {Displaced(X, trust_ * within), trust_ * v_ + (1 - trust_) * differences_};
 }
 

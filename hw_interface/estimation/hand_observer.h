@@ -14,7 +14,7 @@ struct HandObserverOptions {
   double bandwidth = 120;
   /// c: the handle is taken for so much lighter than the arm's model says, in [0, 4]. More adds
   /// damping to what a spring renders; for a rendered inertia it is 1.
-  double lighter = 1.5;
+  double lighter = 1;
 
   /// @throws std::invalid_argument naming field, value and range.
   void Validate() const;

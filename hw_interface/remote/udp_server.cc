@@ -3,8 +3,22 @@
 #include <algorithm>
 
 #include "vmech/base/check_range.h"
+#include "vmech/hw_interface/arm/sarcos_arm.h"
 
 namespace vmech {
+
+SafetyOptions DeviceLimits() {
+  SafetyOptions limits;
+  limits.soft_start = 0;
+  limits.force_slew = 5e4;
+  limits.moment_slew = 2500;
+  // A store that only the host knows may give energy for as long as it likes.
+  limits.energy_trip = 100;
+  limits.passivity.enabled = false;
+  limits.passivity.credit = 10;
+  limits.passivity.forgiven = 10;
+  return limits;
+}
 
 void UdpServerOptions::Validate() const {
   CheckRange("UdpServerOptions", "hold", hold, 0, 0.1);
@@ -13,7 +27,10 @@ void UdpServerOptions::Validate() const {
 }
 
 UdpServer::UdpServer(const UdpServerOptions& options, Master* device)
-    : options_(options), device_(device), socket_(options.local) {
+    : options_(options),
+      device_(device),
+      socket_(options.local),
+      limits_(options.limits, device->info()) {
   options_.Validate();
 }
 
@@ -78,19 +95,37 @@ double UdpServer::Share(std::int64_t now_ns) const noexcept {
 
 void UdpServer::ServeDevice(std::int64_t now_ns) {
   const IoStatus io = device_->Read(now_ns, &out_.state);
-  out_.fault = io == IoStatus::kDeviceFault || device_->lifecycle() == Lifecycle::kFault;
-  const bool news = io == IoStatus::kOk || out_.fault;
-  if (news && session_ != 0) Answer(PacketKind::kState, now_ns);
   const double share = session_ != 0 && command_.active ? Share(now_ns) : 0;
+  if (share == 0 && limits_.latched() != ForceOff::kNone) limits_.Unlatch();
   if (share > 0 && device_->lifecycle() == Lifecycle::kInactive) device_->Activate();
   if (share == 0) device_->Deactivate();
 
-  MasterCommand command = command_.command;
-  command.F_Ho_D *= share;
-  command.gripper_torque *= share;
-  command.valid_until_ns =
-      now_ns + static_cast<std::int64_t>(1e9 * (options_.hold + options_.ramp));
-  if (device_->lifecycle() == Lifecycle::kActive) (void)device_->Write(command);
+  MasterCommand wanted = command_.command;
+  wanted.F_Ho_D *= share;
+  wanted.gripper_torque *= share;
+  wanted.valid_until_ns = now_ns + static_cast<std::int64_t>(1e9 * (options_.hold + options_.ramp));
+  const MasterCommand safe = WithinLimits(wanted, io);
+  if (device_->lifecycle() == Lifecycle::kActive) (void)device_->Write(safe);
+
+  const bool tripped = limits_.latched() != ForceOff::kNone;
+  out_.fault = io == IoStatus::kDeviceFault || device_->lifecycle() == Lifecycle::kFault || tripped;
+  const bool news = io == IoStatus::kOk || out_.fault;
+  if (news && session_ != 0) Answer(PacketKind::kState, now_ns);
+}
+
+MasterCommand UdpServer::WithinLimits(MasterCommand command, IoStatus io) noexcept {
+  MasterState state = out_.state;
+  state.valid &= ~static_cast<std::uint32_t>(kSensesEcho);  // it counts the host's commands
+  const SafetyOutput safe =
+      limits_.Apply({device_->lifecycle(), io, &state, command.F_Ho_D, /*stored_energy=*/0});
+  command.F_Ho_D = safe.F_Ho_D;
+  const double gripper = GripperRange{}.torque_limit;
+  command.gripper_torque = std::clamp(command.gripper_torque, -gripper, gripper);
+  if (safe.off != ForceOff::kNone) {
+    command.mode = CommandMode::kZero;
+    command.gripper_torque = 0;
+  }
+  return command;
 }
 
 void UdpServer::EndSession() noexcept {

@@ -11,9 +11,12 @@ struct CouplingChoice {
   double scale = 1;          ///< force at the hand over force at the mechanism, at most 1
   double inertia_ratio = 0;  ///< lambda: largest inertia of the mechanism over the handle's own
   double weight = 0;         ///< force of the mechanism on a hand that keeps it here [N]
+  /// What a step of the encoders makes of the largest wrench: the work that a sample cannot tell
+  /// [J].
+  double unseen_work = 0.02;
 
-  /// Safety for a stiff coupling behind encoders of 16 bits: their steps are forgiven as energy,
-  /// and the force may change as fast as the coupling's.
+  /// Safety for a stiff coupling behind encoders: work that they cannot tell is forgiven, ten times
+  /// as much trips, and the force may change as fast as the coupling's.
   SafetyOptions Safety() const;
 };
 
@@ -25,7 +28,8 @@ struct CouplingChoice {
 ///
 ///   K = D w^2,  B = 2 z D w,  w = min(1.2 w_v lambda^1/2, w_d),  z = 0.4,  D the handle's masses,
 ///
-/// lambda the largest of N' M N s = lambda (J N)' D J N s, N the free motions. Where lambda asks
+/// lambda the largest of N' M N s = lambda (J N)' D J N s, N the free motions; near a dead centre
+/// of the hand, where it has no bound, four times the least of the poses about. Where lambda asks
 /// for more than w_d, or the weight for more than half of the device's peak force, forces are
 /// scaled down. A device that states no masses gets a soft spring, watched by the passivity
 /// controller. @throws std::invalid_argument if the mechanism has no freedom at q.

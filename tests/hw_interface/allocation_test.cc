@@ -3,14 +3,19 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <memory>
 
 #include "hw_interface/held_tick.h"
+#include "hw_interface/point_master.h"
 #include "hw_interface/tick_input.h"
 #include "support/count_allocations.h"
 #include "support/examples.h"
 #include "vmech/hw_interface/loop/runner.h"
 #include "vmech/hw_interface/masters/simulated_master.h"
+#include "vmech/hw_interface/masters/workspace_master.h"
+#include "vmech/hw_interface/probing/probe_ticks.h"
 #include "vmech/hw_interface/rendering/coupled_tick.h"
 
 namespace vmech {
@@ -52,6 +57,32 @@ TEST(Runner, AllocatesNothingIn10000Ticks) {
   EXPECT_EQ(summary.status, RunStatus::kFinished) << summary.FullReport();
   EXPECT_EQ(tick.ticks, 10'000);
   EXPECT_EQ(tick.at_last - tick.at_first, 0);
+}
+
+/// Scale, clutch and the tick that shakes a handle, at a point that a hand may hold.
+TEST(WorkspaceMaster, AllocatesNothingWhileItIsShaken) {
+  WorkspaceOptions options;
+  options.motion_scale = 2;
+  options.clutch = 0;
+  WorkspaceMaster master(options, std::make_unique<PointMaster>(PointOptions{}));
+  master.Configure();
+  master.Activate();
+  ShakeTick tick({}, 1e-3);
+  std::array<double, 2> channels{};
+  MasterState state;
+  const long before = allocations;
+  for (std::int64_t k = 0; k < 5000; ++k) {
+    ASSERT_EQ(master.Read(k * 1'000'000, &state), IoStatus::kOk);
+    TickInput input;
+    input.fresh = true;
+    input.elapsed = 1e-3;
+    input.state = &state;
+    MasterCommand command;
+    command.mode = CommandMode::kWrench;
+    command.F_Ho_D = tick.Step(input, channels).F_Ho_W;
+    ASSERT_EQ(master.Write(command), IoStatus::kOk);
+  }
+  EXPECT_EQ(allocations - before, 0);
 }
 
 TEST(CoupledTick, AllocatesNothingWhileItsHandLeadsItSlipsAndLetsGo) {

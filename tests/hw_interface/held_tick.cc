@@ -1,5 +1,7 @@
 #include "hw_interface/held_tick.h"
 
+#include <utility>
+
 #include "hw_interface/tick_input.h"
 #include "support/examples.h"
 #include "vmech/hw_interface/masters/simulated_master.h"
@@ -105,6 +107,16 @@ void HeldTick::Filter() {
 
 void HeldTick::Resolve() {
   torques_->Resolve(NextSample(), true, &command_);
+}
+
+TripleBuffer<TickPicture>* HeldTick::Show() {
+  TickPicture picture;
+  picture.q = ClosedStart(*tree_);
+  picture.joints.resize(tree_->mechanism.joints.size());
+  auto shown = std::make_unique<ShownTick>(std::move(tick_), picture);
+  TripleBuffer<TickPicture>* pictures = &shown->pictures();
+  tick_ = std::move(shown);
+  return pictures;
 }
 
 /// The hand of the samples goes its way whatever it feels: as if the arm exerted nothing.

@@ -39,7 +39,7 @@ struct Session {
         q(StartCoordinates(tree)),
         frame(GraspFrameOf(tree, 0)) {
     arm.hand = ImpedanceOf(grip);
-    X_DH = ArmModel(std::make_shared<const ArmDescription>(SarcosMasterArm(arm.hand.mass))).X_DH();
+    X_DH = ArmModel(std::make_shared<const ArmDescription>(SarcosMasterArm())).X_DH();
     SimulatedMaster device(arm);
     device.Configure();
     info = device.info();

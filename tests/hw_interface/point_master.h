@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
@@ -21,6 +22,8 @@ struct PointOptions {
   double reach = 0, hertz = 1;  // of the hand's target, about each axis
   double peak = 20;
   bool senses_wrench = false;
+  double coulomb = 0;       // dry friction along x, y and z [N]
+  double saturates_at = 0;  // what the motors give at most, whatever the device states; 0: all
 };
 
 class PointMaster : public Master {
@@ -71,6 +74,8 @@ class PointMaster : public Master {
     std::move_backward(pipeline_.begin(), pipeline_.end() - 1, pipeline_.end());
     if (now_ns > command.valid_until_ns) command = MasterCommand{};
     echo_ = command.sequence;
+    const double most = options_.saturates_at, wanted = command.F_Ho_D.head<3>().norm();
+    if (most > 0 && wanted > most) command.F_Ho_D *= most / wanted;
     force = {command.F_Ho_D[0], command.F_Ho_D[1], command.F_Ho_D[2], command.F_Ho_D[5]};
     for (int axis = 0; axis < 4; ++axis) {
       const double before = x[axis];
@@ -96,12 +101,18 @@ class PointMaster : public Master {
     const double target = options_.reach * (axis < 3 ? 1 : 10) * (std::sin(phase) - std::sin(axis));
     const double hand =
         lever2 * (options_.hand_stiffness * (target - x[axis]) - options_.hand_damping * v[axis]);
-    const double F = force[axis] + hand;
+    const double F = WithFriction(force[axis] + hand, m / dt * v[axis], axis);
     const double decay = std::exp(-b / m * dt);
     const double rest = b > 0 ? (1 - decay) * m / b : dt;  // [s]
     const double drift = b > 0 ? (dt - rest) / b : 0.5 * dt * dt / m;
     x[axis] += rest * v[axis] + drift * F;
     v[axis] = decay * v[axis] + rest / m * F;
+  }
+
+  /// A force with dry friction, which holds the handle if it can; `stops`: what stops it at once.
+  double WithFriction(double F, double stops, int axis) const noexcept {
+    const double f = axis < 3 ? options_.coulomb : 0;
+    return F - std::clamp(F + stops, -f, f);
   }
 
   static constexpr int kSubsteps = 4;

@@ -216,6 +216,55 @@ TEST_F(UdpPair, ByeFreesTheDevice) {
   EXPECT_EQ(device_.lifecycle(), Lifecycle::kInactive);
 }
 
+/// A host that is out of its mind: the server answers for the device.
+TEST_F(UdpPair, ForceNeverExceedsWhatTheDeviceStates) {
+  Connect();
+  for (int k = 0; k < 100; ++k) {
+    HostTick(1e6);
+    DeviceTick();
+    EXPECT_LE(std::abs(device_.force[0]), 20);  // its peak
+  }
+  EXPECT_EQ(device_.force[0], 20);
+}
+
+TEST_F(UdpPair, HandleThatIsTooFastLosesTheForceUntilTheHostHasLetGo) {
+  Connect();
+  device_.v[0] = 6;  // it states 5 m/s
+  bool tripped = false;
+  for (int k = 0; k < 40; ++k) {
+    HostTick(1);
+    DeviceTick();
+    if (tripped) EXPECT_EQ(device_.force[0], 0);  // in the period after
+    tripped |= server_->tripped() == ForceOff::kSpeed;
+  }
+  EXPECT_TRUE(tripped);
+  EXPECT_EQ(host_->lifecycle(), Lifecycle::kFault);
+  // A host at fault wishes for no force: the trip is over. Force comes back by the user alone.
+  device_.v[0] = 0;
+  EXPECT_EQ(server_->tripped(), ForceOff::kNone);
+  host_->Recover();
+  host_->Activate();
+  for (int k = 0; k < 40; ++k) {
+    HostTick(1);
+    DeviceTick();
+  }
+  EXPECT_EQ(device_.force[0], 1);
+}
+
+TEST_F(UdpPair, CommandThatWouldLiveForeverDiesWithTheHost) {
+  Connect();
+  HostTick(1);
+  DeviceTick();
+  MasterCommand command;
+  command.sequence = ++commands_;
+  command.mode = CommandMode::kWrench;
+  command.F_Ho_D[0] = 1;  // valid until the end of days
+  (void)host_->Write(command);
+  for (int k = 0; k < 20; ++k) DeviceTick();
+  EXPECT_EQ(device_.force[0], 0);
+  EXPECT_EQ(device_.lifecycle(), Lifecycle::kInactive);
+}
+
 TEST(UdpMaster, SaysWhomItCouldNotReach) {
   UdpMasterOptions options;
   options.device.port = UdpSocket(UdpAddress{}).port();  // nobody any more

@@ -1,4 +1,4 @@
-#include "vmech/apps/view/base64.h"
+#include "vmech/base/encoding/base64.h"
 
 #include <algorithm>
 #include <cstdint>
