@@ -112,7 +112,13 @@ void GraspedMechanism::SetVelocities(const VectorXd& v) noexcept {
   ForwardVelocities(tree_, v.data(), &ws_);
 }
 
+void GraspedMechanism::ComputeVelocityProducts() noexcept {
+  VelocityProducts(tree_, &ws_);
+  has_forces_ = false;
+}
+
 void GraspedMechanism::ComputeMomenta(const VectorXd& v, VectorXd* momenta) noexcept {
+  has_forces_ = false;
   Momenta(tree_, inertias_, v.data(), &ws_, momenta->data());
 }
 
@@ -132,11 +138,13 @@ Screw GraspedMechanism::GraspBias() const noexcept {
 
 void GraspedMechanism::SetAccelerations(const VectorXd& vdot) noexcept {
   ForwardAccelerations(tree_, vdot.data(), &ws_);
+  has_forces_ = false;
 }
 
 void GraspedMechanism::ComputeForces(VectorXd* tau) noexcept {
   GyroscopicWrenches(tree_, inertias_, &ws_);
   NewtonEuler<double>(tree_, inertias_, nullptr, &ws_, tau->data());
+  has_forces_ = true;
 }
 
 void GraspedMechanism::LoadJoints(const Screw& w, const VectorXd& mu,
@@ -161,7 +169,8 @@ void GraspedMechanism::LoadJoints(const Screw& w, const std::vector<Screw>& cut,
 }
 
 void GraspedMechanism::StartLoads(const Screw& w) noexcept {
-  NewtonEuler<double>(tree_, inertias_, nullptr, &ws_, nullptr);
+  if (!has_forces_) NewtonEuler<double>(tree_, inertias_, nullptr, &ws_, nullptr);
+  has_forces_ = false;
   ApplyAlongBranch(tree_, grasp_.node, WrenchAt(G_.p, w.linear, w.angular), &ws_);
 }
 

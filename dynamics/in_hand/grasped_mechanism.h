@@ -52,7 +52,7 @@ class GraspedMechanism {
   /// M v [nv]; forgets the velocities.
   void ComputeMomenta(const VectorXd& v, VectorXd* momenta) noexcept;
   /// Takes v' = 0, and finds what comes of v alone, as all that follows needs it.
-  void ComputeVelocityProducts() noexcept { VelocityProducts(tree_, &ws_); }
+  void ComputeVelocityProducts() noexcept;
   /// The same, and d = s C' v, scaled and padded like C.
   void ComputeLoopBias(double s, VectorXd* d) noexcept;
   /// The acceleration of Go for v' = 0.
@@ -96,6 +96,7 @@ class GraspedMechanism {
   std::vector<Screw> J_;  // columns
   MatrixXd C_;
   VectorXd e2_;
+  bool has_forces_ = false;  // ws_ has the F of the accelerations in it
 };
 
 }  // namespace vmech

@@ -17,6 +17,7 @@ namespace {
 constexpr int kOwnChannels = 5;
 constexpr double kFinest = 1e-7;      // [m], [rad]: of a device that states no resolution
 constexpr double kShareTime = 0.01;   // [s] in which the share of inertia follows the pose
+constexpr double kMean = 0.02;        // [s] over which energy given to the hand is smoothed
 constexpr double kRest = 0.1;         // [s] after which a hand begins to be at rest
 constexpr int kFirstIterations = 30;  // of the inertia's ratio, where the hand takes hold
 
@@ -148,7 +149,7 @@ void MechanismTick::Reset() noexcept {
   coordinates_.Reset();
   for (VectorXd* x : {&v_, &u_, &udot_, &felt_, &felt_rate_}) x->setZero();
   last_q_ = tracker_.q();
-  share_ = last_root_ = unpaid_ = 0;
+  share_ = last_root_ = unpaid_ = mean_given_ = 0;
   F_Ho_.setZero();
   starts_ = true;
   w_d_.setZero();
@@ -187,7 +188,8 @@ void MechanismTick::Feel(int periods, const Vector6d& charged, const Vector6d& w
   w_c_ = law.Wrench(e1_, V_WH_ - dynamics_.Twist(v_));
   FollowWrench(periods * period_);
   F_Ho_ = -(w_d_ + w_c_) - Brake();
-  AccountForEnergy(charged.dot(way), options_.scale * dynamics_.Energy() + law.StoredEnergy(e1_));
+  AccountForEnergy(periods * period_, charged.dot(way),
+                   options_.scale * dynamics_.Energy() + law.StoredEnergy(e1_));
 }
 
 /// As observed, or by a filter of its samples. Returns its way since the last sample.
@@ -283,10 +285,12 @@ void MechanismTick::FindFeltMotion(double elapsed) noexcept {
 /// The mechanism can gain energy that no hand has given: where the nearest pose leaps or is caught
 /// up with, or the hand is not charged for all that moves it. Such a gain is no debt of the hand's,
 /// but what the hand is given from then on is, until it is paid back.
-void MechanismTick::AccountForEnergy(double given, double energy) noexcept {
+void MechanismTick::AccountForEnergy(double elapsed, double given, double energy) noexcept {
   if (starts_) energy_ = energy;
   starts_ = false;
-  unpaid_ = std::max(0.0, unpaid_ + energy - energy_ + given - std::max(0.0, given));
+  // Encoder steps to and fro are no gift: what counts is the mean.
+  mean_given_ += std::min(1.0, elapsed / kMean) * (given - mean_given_);
+  unpaid_ = std::max(0.0, unpaid_ + energy - energy_ + given - std::max(0.0, mean_given_));
   energy_ = energy;
 }
 

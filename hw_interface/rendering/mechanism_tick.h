@@ -105,7 +105,7 @@ class MechanismTick : public Tick {
   void FindFeltMotion(double elapsed) noexcept;
   Vector6d Brake() const noexcept;
   void Feel(int periods, const Vector6d& charged, const Vector6d& way) noexcept;
-  void AccountForEnergy(double given, double energy) noexcept;
+  void AccountForEnergy(double elapsed, double given, double energy) noexcept;
   void FollowWrench(double elapsed) noexcept;
   void Report(std::span<double> channels) noexcept;
 
@@ -129,10 +129,10 @@ class MechanismTick : public Tick {
   VectorXd felt_, felt_rate_;  // s^1/2 u, and s^1/2 times its rate
   double share_ = 0, last_root_ = 0, least_share_ = 1;
   Vector6d e1_ = Vector6d::Zero();
-  Vector6d w_d_ = Vector6d::Zero();   // as felt
-  Vector6d w_c_ = Vector6d::Zero();   // the pull of the constraint
-  Vector6d F_Ho_ = Vector6d::Zero();  // what the hand was to feel last
-  double energy_ = 0, unpaid_ = 0;    // of mechanism and constraint as felt [J]
+  Vector6d w_d_ = Vector6d::Zero();                  // as felt
+  Vector6d w_c_ = Vector6d::Zero();                  // the pull of the constraint
+  Vector6d F_Ho_ = Vector6d::Zero();                 // what the hand was to feel last
+  double energy_ = 0, unpaid_ = 0, mean_given_ = 0;  // of mechanism and constraint as felt [J]
   PeakForces peaks_;
 };
 

@@ -10,6 +10,7 @@ namespace vmech {
 namespace {
 
 constexpr double kBandwidth = 250;  // of the observer [1/s]
+constexpr double kFine = 5e-4;  // [m]: coarser steps of a device are heard, the more the heavier
 
 /// r, by how the acceleration is found.
 double RatioFactor(EstimatorKind kind, bool observed) {
@@ -30,11 +31,13 @@ double QuantisationEnergy(const DeviceInfo& device) {
 }
 
 SafetyOptions SafetyFor(const DeviceInfo& device) {
-  constexpr double kLeast = 1e-3, kMost = 0.05;  // [J]
+  constexpr double kLeast = 1e-3, kMost = 0.2;  // [J]
+  constexpr double kForgetting = 0.2;           // [s]
   SafetyOptions safety;
   safety.carried_start = true;
   safety.passivity.grace = std::clamp(QuantisationEnergy(device), kLeast, kMost);
-  safety.passivity.forgiven = 10 * safety.passivity.grace;
+  safety.passivity.forgiven = safety.passivity.grace / kForgetting;
+  safety.energy_trip = std::max(safety.energy_trip, 3 * safety.passivity.grace);
   // What the passivity controller takes away must go at once; the tick keeps to a slew of its own.
   safety.force_slew = 5e4;
   safety.moment_slew = 2500;
@@ -74,6 +77,7 @@ PaperChoice ChoosePaper(const PaperRequest& request, const KinematicTree& tree, 
     tick.handle_masses = HandleMasses(frame, device);
     tick.inertia_ratio = RatioFactor(request.estimator, HandObserver::Suits(device)) *
                          tick.roll_off / (0.5 * device.period + device.delay);
+    if (device.linear.resolution > kFine) tick.inertia_ratio *= kFine / device.linear.resolution;
   }
   HandDynamics dynamics(tree, frame, tick.law.stiffness, q);
   if (dynamics.Evaluate(Vector6d::Zero(), Vector6d::Zero())) choice.weight = dynamics.w_d();

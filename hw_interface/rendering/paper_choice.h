@@ -32,9 +32,12 @@ struct PaperChoice {
 ///   R = r t / (T/2 + t_d),
 ///
 /// with r = 0.15 where a HandObserver knows what the arm's own force does to the handle, and less
-/// where it has to be found in samples. Where the weight is more than half of the device's peak
-/// force, all forces are scaled down. Passivity is watched with a grace of what the device's peak
-/// does along one step of its encoders, and of that ten times a second.
+/// where it has to be found in samples, or in steps of more than half a millimetre. Where the
+/// weight is more than half of the device's peak force, or a quarter of the inertia more than can
+/// be rendered, all forces are scaled down. Passivity is watched with a grace of what the device's
+/// peak does along one step of its encoders, between 1 mJ and 0.2 J, and that is forgiven every 0.2
+/// s: without it a controller of passivity answers each step of an encoder with a kick. Three times
+/// the grace trips, or what is the default.
 /// @throws std::invalid_argument as MechanismTick.
 PaperChoice ChoosePaper(const PaperRequest& request, const KinematicTree& tree, int grasp,
                         const VectorXd& q, const DeviceInfo& device);

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 namespace vmech {
@@ -147,6 +150,121 @@ TEST(Estimators, StartAtRestAfterAReset) {
   EXPECT_EQ(e.x, 5);
   EXPECT_EQ(e.v, 0);
   EXPECT_EQ(e.a, 0);
+}
+
+/// A handle of one freedom behind an encoder, which renders the inertia M by one way or another to
+/// an acceleration. docs/haptic.md has the table.
+enum class Way { kDifferences, kKalman, kRollOff, kObserverRollOff, kImplicit };
+
+class RenderedMass {
+ public:
+  static constexpr double kHandle = 0.82, kDamping = 3, kStep = 3e-5, kTime = 9e-3;
+
+  RenderedMass(Way way, double ratio, double bandwidth)
+      : way_(way), mass_(ratio * kHandle), kalman_(kPeriod, kStep, 100), differences_(kPeriod) {
+    constexpr double kUnit = 1e-3;  // gains depend on bandwidth times period alone
+    gain_ = KalmanGains(kPeriod, kUnit, std::pow(bandwidth, 6) * kPeriod * kUnit * kUnit / 12);
+  }
+
+  /// The force on the handle for the next period, from a sample.
+  double Force(double x) {
+    if (way_ == Way::kDifferences) return force_ = -mass_ * differences_.Update(x).a;
+    if (way_ == Way::kKalman) return force_ = -mass_ * kalman_.Update(x).a;
+    if (way_ == Way::kRollOff) return RollOff(differences_.Update(x).v);
+    const double a = d_ + force_ / kHandle;
+    x_ += kPeriod * (v_ + 0.5 * kPeriod * a);
+    v_ += kPeriod * a;
+    const double innovation = x - x_;
+    x_ += gain_[0] * innovation;
+    v_ += gain_[1] * innovation;
+    d_ += gain_[2] * innovation;
+    if (way_ == Way::kObserverRollOff) return RollOff(v_);
+    return force_ = -mass_ * d_ / (1 + mass_ / kHandle);  // F = -M (d + F/m)
+  }
+  double mass() const { return mass_; }
+
+ private:
+  double RollOff(double v) {
+    const double rate = (v - u_) / (kTime + kPeriod);
+    u_ += kPeriod * rate;
+    return force_ = -mass_ * rate;
+  }
+
+  Way way_;
+  double mass_;
+  std::array<double, 3> gain_;
+  KalmanEstimator<> kalman_;
+  FiniteDifferences differences_;
+  double x_ = 0, v_ = 0, d_ = 0, u_ = 0, force_ = 0;
+};
+
+/// Does the handle come to rest with nobody or somebody at it?
+bool ComesToRest(RenderedMass rendered, double hand_mass, double stiffness, double damping) {
+  constexpr int kSubsteps = 10;
+  double x = 0, v = 0.02;
+  for (int k = 0; k < 3000; ++k) {
+    const double force = std::clamp(rendered.Force(x), -1e3, 1e3);
+    for (int i = 0; i < kSubsteps; ++i) {
+      v += kPeriod / kSubsteps * (force - stiffness * x - (RenderedMass::kDamping + damping) * v) /
+           (RenderedMass::kHandle + hand_mass);
+      x += kPeriod / kSubsteps * v;
+    }
+  }
+  return std::abs(rendered.Force(x)) < 1e-2 * std::max(1.0, rendered.mass());
+}
+
+double LargestStableRatio(Way way, double bandwidth = 250) {
+  double largest = 0;
+  for (double ratio = 0.05; ratio < 300; ratio *= 1.1) {
+    const RenderedMass rendered(way, ratio, bandwidth);
+    const bool stable = ComesToRest(rendered, 0, 0, 0) && ComesToRest(rendered, 0.277, 34, 2.28) &&
+                        ComesToRest(rendered, 0.554, 135, 6.45) &&
+                        ComesToRest(rendered, 0.554, 1350, 20.4);
+    if (!stable) break;
+    largest = ratio;
+  }
+  return largest;
+}
+
+/// Force over that of the true inertia at 3 Hz, 10 mm to both sides, behind the encoder.
+std::complex<double> Felt(Way way, double ratio, double bandwidth = 250) {
+  RenderedMass rendered(way, ratio, bandwidth);
+  constexpr double kRate = 2 * std::numbers::pi * 3, kStroke = 0.01, kStep = RenderedMass::kStep;
+  std::complex<double> felt = 0, expected = 0;
+  for (int k = 0; k < 4000; ++k) {
+    const double x = kStroke * std::sin(kRate * k * kPeriod);
+    const std::complex<double> phase = std::polar(1.0, -kRate * k * kPeriod);
+    const double force = rendered.Force(kStep * std::round(x / kStep));
+    if (k < 2000) continue;
+    felt += phase * force;
+    expected += phase * rendered.mass() * kRate * kRate * x;
+  }
+  return felt / expected;
+}
+
+double Degrees(const std::complex<double>& felt) {
+  return std::arg(felt) * 180 / std::numbers::pi;
+}
+
+TEST(RenderedMass, IsTwiceTheHandlesByDifferencesAndManyTimesByARollOff) {
+  EXPECT_NEAR(LargestStableRatio(Way::kDifferences), 2.1, 0.2);
+  EXPECT_NEAR(LargestStableRatio(Way::kKalman), 2.7, 0.3);
+  EXPECT_GT(LargestStableRatio(Way::kRollOff), 15);
+  EXPECT_GT(LargestStableRatio(Way::kObserverRollOff), 15);
+  EXPECT_GT(LargestStableRatio(Way::kImplicit), 250);
+}
+
+TEST(RenderedMass, IsFeltAt3HertzByARollOff) {
+  for (const double ratio : {1.0, 5.0}) {
+    const std::complex<double> felt = Felt(Way::kObserverRollOff, ratio);
+    EXPECT_NEAR(felt.real(), 1, 0.05) << ratio;
+    EXPECT_LT(std::abs(Degrees(felt)), 15) << ratio;
+  }
+}
+
+TEST(RenderedMass, LagsTheMoreTheHeavierItIsWhereSolvedImplicitly) {
+  EXPECT_LT(Degrees(Felt(Way::kImplicit, 1, 120)), -30);
+  EXPECT_LT(Degrees(Felt(Way::kImplicit, 5, 600)), 1.8 * Degrees(Felt(Way::kImplicit, 1, 600)));
 }
 
 }  // namespace
