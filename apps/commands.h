@@ -75,6 +75,10 @@ struct HapticArguments {
   double stiffness = 0;              ///< paper: of the constraint [N/m]; 0: what the device allows
   double inertia = 0;                ///< paper: share that is felt; 0: what the device allows
   bool gripper = false;              ///< hold while the gripper is closed
+  double motion_scale = 1;           ///< motion of the mechanism over that of the handle
+  int clutch = 0;                    ///< the button that lets the handle move alone; 0: none
+  std::vector<double> home;          ///< of the handle [m]; empty: where it is
+  std::vector<std::string> handle;   ///< "mass=0.3", ..: what is known of it better
   bool view = false;                 ///< shown on a page
   std::filesystem::path record;      ///< empty: no recording
   bool free_running = false;         ///< as fast as it computes
@@ -83,6 +87,18 @@ struct HapticArguments {
   bool quiet = false;
 };
 int RunHaptic(const HapticArguments& arguments);
+
+struct DeviceArguments {
+  std::string master;                ///< as HapticArguments::master
+  double rate = 1000;                ///< of the simulated master [Hz]
+  bool identify = false;             ///< move it and fit what it is
+  double force = 0;                  ///< that it is moved with [N]; 0: GentleForce
+  double peak_to = 0;                ///< of blows that seek its peak [N]; 0: none
+  bool free_running = false;         ///< as fast as it computes
+  std::optional<int> serve;          ///< the UDP port that it is served at; none: it is not
+  std::string listen = "127.0.0.1";  ///< address of this machine to serve it at
+};
+int RunDevice(const DeviceArguments& arguments);
 
 struct ViewArguments {
   std::filesystem::path file;       ///< mechanism, study, result folder or recording
