@@ -80,6 +80,10 @@ struct HapticArguments {
   std::string estimator = "observer";  ///< paper: of the motion, see ParseEstimator
   std::string wrench = "workless";     ///< paper: rule of w_d, see ParseWrench
   bool gripper = false;                ///< hold while the gripper is closed
+  double motion_scale = 1;             ///< motion of the mechanism over that of the handle
+  int clutch = 0;                      ///< the button that lets the handle move alone; 0: none
+  std::vector<double> home;            ///< of the handle [m]; empty: where it is
+  std::vector<std::string> handle;     ///< "mass=0.3", ..: what is known of it better
   bool view = false;                   ///< shown on a page
   std::filesystem::path record;        ///< CSV or MCAP; empty: no recording
   bool force = false;                  ///< write over an old recording
@@ -89,6 +93,18 @@ struct HapticArguments {
   bool quiet = false;
 };
 int RunHaptic(const HapticArguments& arguments);
+
+struct DeviceArguments {
+  std::string master;                ///< as HapticArguments::master
+  double rate = 1000;                ///< of the simulated master [Hz]
+  bool identify = false;             ///< move it and fit what it is
+  double force = 0;                  ///< that it is moved with [N]; 0: GentleForce
+  double peak_to = 0;                ///< of blows that seek its peak [N]; 0: none
+  bool free_running = false;         ///< as fast as it computes
+  std::optional<int> serve;          ///< the UDP port that it is served at; none: it is not
+  std::string listen = "127.0.0.1";  ///< address of this machine to serve it at
+};
+int RunDevice(const DeviceArguments& arguments);
 
 struct ViewArguments {
   std::filesystem::path file;       ///< mechanism, study, result folder or recording

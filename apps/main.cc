@@ -15,6 +15,7 @@
 #include "vmech/apps/console/option_error.h"
 #include "vmech/apps/console/printable_streams.h"
 #include "vmech/apps/console/suggestion.h"
+#include "vmech/apps/haptic/device_options.h"
 #include "vmech/apps/import_launcher.h"
 #include "vmech/mechanisms/files/document.h"
 #include "vmech/mechanisms/mechanism.h"
@@ -148,6 +149,7 @@ constexpr const char* kHapticHelp =
     "its\n"
     "weight, its inertia and the pull of what it does not allow. MASTER is the device:\n"
     "  simulated       a seven-joint arm and an operator, who follows the study's hand or wanders\n"
+    "  haply[:PORT]    an Inverse3 of Haply's behind their Inverse Service\n"
     "  replay:FILE     a recorded hand\n"
     "  udp:HOST:PORT   a device on another machine\n"
     "  spacenav        a 6-axis mouse behind spacenavd, without force\n"
@@ -217,6 +219,7 @@ void AddHaptic(CLI::App* app, vmech::HapticArguments* haptic) {
   command->add_flag("--gripper", haptic->gripper,
                     "hold while the device's gripper is closed, the link that is nearest then; the "
                     "simulated operator lets go for a second now and then");
+  vmech::AddWorkspace(command, haptic);
   command->add_flag("--view", haptic->view,
                     "show the session in the browser, at an address that is printed");
   command
@@ -341,6 +344,7 @@ struct Arguments {
   vmech::IkArguments ik;
   vmech::HapticArguments haptic;
   vmech::ReplayArguments replay;
+  vmech::DeviceArguments device;
   vmech::ViewArguments view;
   vmech::ExportArguments exported;
   std::string shell;
@@ -362,6 +366,7 @@ void AddCommands(CLI::App* app, Arguments* arguments) {
   AddIk(app, &arguments->ik);
   AddHaptic(app, &arguments->haptic);
   AddReplay(app, &arguments->replay);
+  vmech::AddDevice(app, &arguments->device);
   AddView(app, &arguments->view);
   AddExport(app, &arguments->exported);
   app->add_subcommand("completion", kCompletionHelp)
@@ -383,6 +388,7 @@ int RunCommand(const CLI::App& app, const Arguments& arguments) {
   if (app.got_subcommand("ik")) return RunIk(arguments.ik);
   if (app.got_subcommand("haptic")) return RunHaptic(arguments.haptic);
   if (app.got_subcommand("replay")) return RunReplay(arguments.replay);
+  if (app.got_subcommand("device")) return RunDevice(arguments.device);
   if (app.got_subcommand("view")) return RunView(arguments.view);
   if (app.got_subcommand("export")) return RunExport(arguments.exported);
   if (app.got_subcommand("completion")) return PrintCompletion();

@@ -3,7 +3,6 @@
 
 #include <atomic>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -15,8 +14,10 @@
 #include "vmech/apps/commands.h"
 #include "vmech/apps/files/file_kind.h"
 #include "vmech/apps/files/inputs_apart.h"
+#include "vmech/apps/haptic/handle_home.h"
 #include "vmech/apps/haptic/haptic_session.h"
 #include "vmech/apps/haptic/haptic_view.h"
+#include "vmech/apps/haptic/interrupt_scope.h"
 #include "vmech/apps/haptic/session_recording.h"
 #include "vmech/dynamics/in_hand/passive_joints.h"
 #include "vmech/hw_interface/audit/audit.h"
@@ -35,27 +36,6 @@
 
 namespace vmech {
 namespace {
-
-std::atomic<Runner*> running = nullptr;
-
-void StopRunning(int) {
-  if (Runner* runner = running) runner->Stop();
-}
-
-/// Ends the run on Ctrl-C, with the motors off and the report printed.
-class InterruptScope {
- public:
-  explicit InterruptScope(Runner* runner) {
-    running = runner;
-    std::signal(SIGINT, StopRunning);
-    std::signal(SIGTERM, StopRunning);
-  }
-  ~InterruptScope() {
-    std::signal(SIGINT, SIG_DFL);
-    std::signal(SIGTERM, SIG_DFL);
-    running = nullptr;
-  }
-};
 
 /// Prints the newest figures ten times a second while it lives, on a terminal only.
 class StatusLine {
@@ -127,6 +107,18 @@ struct HeldMechanism {
     X_WG = PoseInWorld(ws, grasp.node, grasp.X_BG);
   }
 
+  /// Held as this device can: at a point where it exerts no moments.
+  void FitTo(const DeviceInfo& device, bool quiet) {
+    Grasp& grasp = tree.mechanism.grasps[static_cast<std::size_t>(subject.grasp)];
+    if (!ForcesAlone(device) || grasp.kind == GraspKind::kPoint) return;
+    grasp.kind = GraspKind::kPoint;
+    if (quiet) return;
+    fmt::print(
+        "note: {} exerts forces and no moments; it holds the mechanism at the point of "
+        "grasp {}, which turns as it likes\n",
+        device.name, grasp.name);
+  }
+
   HapticSubject subject;
   KinematicTree tree;
   VectorXd q;
@@ -134,14 +126,31 @@ struct HeldMechanism {
   Posed X_WG;
 };
 
+WorkspaceOptions WorkspaceOf(const HapticArguments& arguments) {
+  WorkspaceOptions workspace;
+  workspace.motion_scale = arguments.motion_scale;
+  workspace.clutch = arguments.clutch - 1;
+  workspace.known = ParseHandle(arguments.handle);
+  return workspace;
+}
+
+/// What the filter is to hold; a device without force has no limits, and nothing is at work.
+SafetyOptions SafetyFor(const DeviceInfo& device, SafetyOptions safety) {
+  constexpr double kAnything = 1e3;  // [N], [N m]
+  if (!device.takes_wrench && !device.takes_torque) {
+    safety.max_force = safety.max_moment = kAnything;
+  }
+  return safety;
+}
+
 RunnerOptions OptionsOf(const HapticArguments& arguments, const HeldMechanism& held,
-                        const Rendering& rendering) {
+                        const Rendering& rendering, const DeviceInfo& device) {
   RunnerOptions options;
   options.seconds = arguments.seconds;
   options.observer = rendering.observer;
   if (arguments.post_mortem) options.post_mortem = arguments.file.stem().string() + "-fault.csv";
   options.R_WD = held.R_WD;
-  options.safety = rendering.safety;
+  options.safety = SafetyFor(device, rendering.safety);
   options.gripper = arguments.gripper;
   options.notes = {{"file", arguments.file.string()},
                    {"grasp", arguments.grasp},
@@ -159,8 +168,14 @@ RunnerOptions OptionsOf(const HapticArguments& arguments, const HeldMechanism& h
   return options;
 }
 
+/// The clock that a session goes by.
+std::unique_ptr<LoopClock> ClockOf(const HapticArguments& arguments) {
+  if (arguments.free_running) return std::make_unique<FreeRunningClock>();
+  return std::make_unique<WallClock>();
+}
+
 /// Runs the loop of a configured master and reports.
-int Hold(const HeldMechanism& held, HapticArguments arguments, Master* master) {
+int Hold(const HeldMechanism& held, HapticArguments arguments, Master* master, LoopClock* clock) {
   arguments.grasp = held.subject.mechanism.grasps[held.subject.grasp].name;
   Rendering rendering =
       MakeRendering({arguments.coupling, arguments.scale, arguments.stiffness, arguments.inertia,
@@ -173,11 +188,8 @@ int Hold(const HeldMechanism& held, HapticArguments arguments, Master* master) {
     shown = tick.get();
     rendering.tick = std::move(tick);
   }
-  WallClock wall;
-  FreeRunningClock free;
-  LoopClock* clock = &wall;
-  if (arguments.free_running) clock = &free;
-  Runner runner(OptionsOf(arguments, held, rendering), master, rendering.tick.get(), clock);
+  Runner runner(OptionsOf(arguments, held, rendering, master->info()), master, rendering.tick.get(),
+                clock);
   SessionRecording recording({arguments.record, arguments.force, arguments.free_running}, held.tree,
                              held.subject.grasp, &runner);
   if (!arguments.quiet) fmt::print("{}{}", BoundsReport(master->info()), rendering.report);
@@ -227,6 +239,11 @@ HapticArguments ArgumentsOf(const Recording& recording, const ReplayArguments& r
   }
   arguments.grasp = recording.Note("grasp");
   arguments.coupling = recording.Note("coupling");
+  for (auto [key, word] :
+       {std::pair{"contact", &arguments.contact}, std::pair{"estimator", &arguments.estimator},
+        std::pair{"wrench", &arguments.wrench}}) {
+    if (const std::string note = recording.Note(key); !note.empty()) *word = note;
+  }
   const auto number = [&](const char* key) {
     const std::string text = recording.Note(key);
     char* end = nullptr;
@@ -291,12 +308,19 @@ void RequireRecordApart(const HapticArguments& arguments) {
 
 int RunHaptic(const HapticArguments& arguments) {
   RequireRecordApart(arguments);
-  const HeldMechanism held(arguments);
-  const std::unique_ptr<Master> master =
+  const WorkspaceOptions workspace = WorkspaceOf(arguments);
+  HeldMechanism held(arguments);
+  std::unique_ptr<Master> master =
       MakeMaster({arguments.master, arguments.rate, ParseGrip(arguments.grip), held.R_WD, held.X_WG,
                   held.subject.law, held.subject.end, arguments.gripper});
   master->Configure();
-  return Hold(held, arguments, master.get());
+  const std::unique_ptr<LoopClock> clock = ClockOf(arguments);
+  if (!arguments.home.empty()) {
+    BringHome(master.get(), clock.get(), Vector3d(arguments.home.data()));
+  }
+  master = InWorkspace(workspace, std::move(master));
+  held.FitTo(master->info(), arguments.quiet);
+  return Hold(held, arguments, master.get(), clock.get());
 }
 
 int RunReplay(const ReplayArguments& replay) {
@@ -316,15 +340,16 @@ int RunReplay(const ReplayArguments& replay) {
   }
   const HapticArguments arguments = ArgumentsOf(recording, replay);
   const bool as_it_was = replay.file.empty() && !recording.mechanism.text.empty();
-  const HeldMechanism held = as_it_was
-                                 ? HeldMechanism(static_cast<const RecordingHeader&>(recording))
+  HeldMechanism held = as_it_was ? HeldMechanism(static_cast<const RecordingHeader&>(recording))
                                  : HeldMechanism(arguments);
   if (!replay.motion.empty()) {
     WriteHandMotion(replay.motion, recording, held.R_WD, held.X_WG);
   }
   ReplayMaster master(recording, ReplayKind::kSession);
   master.Configure();
-  return Hold(held, arguments, &master);
+  held.FitTo(master.info(), arguments.quiet);
+  const std::unique_ptr<LoopClock> clock = ClockOf(arguments);
+  return Hold(held, arguments, &master, clock.get());
 }
 
 }  // namespace vmech

@@ -6,11 +6,15 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
+#include <functional>
+#include <map>
 #include <stdexcept>
 
 #include "vmech/apps/console/option_error.h"
 #include "vmech/apps/files/file_kind.h"
+#include "vmech/hw_interface/haply/haply_master.h"
 #include "vmech/hw_interface/loop/replay_master.h"
 #include "vmech/hw_interface/masters/plugin_master.h"
 #include "vmech/hw_interface/masters/spacenav_master.h"
@@ -67,17 +71,21 @@ std::unique_ptr<Master> MakeSimulated(const MasterRequest& request) {
   return std::make_unique<SimulatedMaster>(options);
 }
 
+/// A whole number, all of the text. @throws OptionError saying what is meant instead.
+int PortOf(std::string_view text, std::string_view meant, std::string_view word) {
+  int port = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), port);
+  if (error == std::errc{} && end == text.data() + text.size()) return port;
+  throw OptionError(fmt::format("--master: {} is meant, not {}", meant, Quoted(word)));
+}
+
 std::unique_ptr<Master> MakeUdp(const std::string& address) {
   const std::size_t colon = address.rfind(':');
   UdpMasterOptions options;
   options.local.host = "0.0.0.0";
   options.device.host = address.substr(0, colon);
   const std::string port = colon == std::string::npos ? "" : address.substr(colon + 1);
-  const auto [end, error] =
-      std::from_chars(port.data(), port.data() + port.size(), options.device.port);
-  if (error != std::errc{} || end != port.data() + port.size()) {
-    throw OptionError(fmt::format("--master: udp:HOST:PORT is meant, not 'udp:{}'", address));
-  }
+  options.device.port = PortOf(port, "udp:HOST:PORT", "udp:" + address);
   return std::make_unique<UdpMaster>(options);
 }
 
@@ -85,6 +93,12 @@ std::string ScaleReport(double scale, double wanted) {
   if (scale == 1) return {};
   return fmt::format("forces are felt at {:.3g} % of the mechanism's{}\n", 100 * scale,
                      wanted > 0 ? "" : ": what this device can render (--scale)");
+}
+
+std::unique_ptr<Master> MakeHaply(const std::string& port) {
+  HaplyOptions options;
+  if (!port.empty()) options.port = PortOf(port, "haply:PORT", "haply:" + port);
+  return std::make_unique<HaplyMaster>(options);
 }
 
 Rendering MakeCoupled(const RenderingRequest& request, const KinematicTree& tree, int grasp,
@@ -206,9 +220,15 @@ Grip ParseGrip(const std::string& word) {
       fmt::format("--grip: {} is not one of absent, light, relaxed, firm", Quoted(word)));
 }
 
+bool ForcesAlone(const DeviceInfo& device) {
+  return device.takes_wrench && device.linear.peak > 0 && device.angular.peak == 0;
+}
+
 std::unique_ptr<Master> MakeMaster(const MasterRequest& request) {
   const std::string& word = request.word;
   if (word == "simulated") return MakeSimulated(request);
+  if (word == "haply") return MakeHaply("");
+  if (const auto port = AfterMark(word, "haply:")) return MakeHaply(*port);
   if (word == "spacenav") return std::make_unique<SpacenavMaster>();
   if (const auto file = AfterMark(word, "replay:")) {
     return std::make_unique<ReplayMaster>(
@@ -223,9 +243,40 @@ std::unique_ptr<Master> MakeMaster(const MasterRequest& request) {
     });
   }
   throw OptionError(
-      fmt::format("--master: {} is not one of simulated, spacenav, replay:FILE, udp:HOST:PORT, "
-                  "plugin:LIBRARY[:PARAMETERS]",
+      fmt::format("--master: {} is not one of simulated, haply[:PORT], spacenav, replay:FILE, "
+                  "udp:HOST:PORT, plugin:LIBRARY[:PARAMETERS]",
                   Quoted(word)));
+}
+
+HandlePhysics ParseHandle(const std::vector<std::string>& words) {
+  HandlePhysics handle;
+  const std::map<std::string, double HandlePhysics::*, std::less<>> figures{
+      {"mass", &HandlePhysics::mass},       {"damping", &HandlePhysics::damping},
+      {"coulomb", &HandlePhysics::coulomb}, {"resolution", &HandlePhysics::resolution},
+      {"peak", &HandlePhysics::peak},       {"max_speed", &HandlePhysics::max_speed}};
+  for (const std::string& word : words) {
+    const std::size_t equals = word.find('=');
+    const auto figure = figures.find(word.substr(0, equals));
+    const std::string value = equals == std::string::npos ? "" : word.substr(equals + 1);
+    char* end = nullptr;
+    const double number = std::strtod(value.c_str(), &end);
+    if (figure == figures.end() || value.empty() || *end != 0 || !(number > 0 && number < 1e6)) {
+      throw OptionError(fmt::format(
+          "--handle: mass=.., damping=.., coulomb=.., resolution=.., peak=.., max_speed=.. above "
+          "zero are meant, not {}",
+          Quoted(word)));
+    }
+    handle.*(figure->second) = number;
+  }
+  return handle;
+}
+
+std::unique_ptr<Master> InWorkspace(const WorkspaceOptions& workspace,
+                                    std::unique_ptr<Master> master) {
+  if (workspace.AsItIs()) return master;
+  auto placed = std::make_unique<WorkspaceMaster>(workspace, std::move(master));
+  placed->Configure();
+  return placed;
 }
 
 void WriteHandMotion(const std::filesystem::path& file, const Recording& recording,

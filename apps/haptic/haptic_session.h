@@ -6,10 +6,12 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "vmech/hw_interface/audit/promise.h"
 #include "vmech/hw_interface/estimation/hand_observer.h"
 #include "vmech/hw_interface/masters/simulated_master.h"
+#include "vmech/hw_interface/masters/workspace_master.h"
 #include "vmech/hw_interface/recording/recording.h"
 #include "vmech/hw_interface/rendering/coupled_tick.h"
 #include "vmech/hw_interface/rendering/mechanism_tick.h"
@@ -47,8 +49,14 @@ auto UsingFile(std::string_view option, Use use) {
 /// "absent", "light", "relaxed" or "firm". @throws OptionError.
 Grip ParseGrip(const std::string& word);
 
-/// The master that a word stands for: simulated, spacenav, replay:FILE, udp:HOST:PORT or
-/// plugin:LIBRARY[:PARAMETERS]. The simulated operator holds the mechanism at X_WG.
+/// A device of three freedoms: it exerts forces, and no moments.
+bool ForcesAlone(const DeviceInfo& device);
+
+/// Figures of a handle from "mass=0.3", "damping=1", ..; see HandlePhysics. @throws OptionError.
+HandlePhysics ParseHandle(const std::vector<std::string>& words);
+
+/// The master that a word stands for: simulated, haply[:PORT], spacenav, replay:FILE, udp:HOST:PORT
+/// or plugin:LIBRARY[:PARAMETERS]. The simulated operator holds the mechanism at X_WG.
 /// @throws OptionError for any other word, std::invalid_argument for a file that cannot be used.
 struct MasterRequest {
   std::string word;
@@ -61,6 +69,10 @@ struct MasterRequest {
   bool gripper = false;  ///< the simulated operator works it
 };
 std::unique_ptr<Master> MakeMaster(const MasterRequest& request);
+
+/// A configured master in the workspace that is asked for, configured.
+std::unique_ptr<Master> InWorkspace(const WorkspaceOptions& workspace,
+                                    std::unique_ptr<Master> master);
 
 /// The hand of a recording in the world as a table t, x, y, z, qw, qx, qy, qz for a study's
 /// `motion: {grasp: .., table: ..}` in metres, from the first sample on; the hand took hold at

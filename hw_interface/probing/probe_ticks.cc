@@ -117,15 +117,18 @@ TickOutput ShakeTick::Step(const TickInput& input, std::span<double> channels) n
   return Force(Within(f, std::max(options_.force, options_.blows_to)));
 }
 
-/// The force grows while there is little motion.
+/// The force grows while there is little motion, slower than the slowest sine; what is too fast is
+/// taken back at once.
 double ShakeTick::Shaken(double time) noexcept {
-  constexpr double kGrowth = 0.4;  // [s]: by the factor e
+  constexpr double kGrowth = 0.8, kRetreat = 0.05;  // [s]: by the factor e
+  constexpr double kLittle = 0.7;
   if (time < 0) return 0;
-  const bool little =
-      (spring_.p() - start_).norm() < options_.reach && spring_.v().norm() < options_.speed;
-  if (little) gain_ = std::min(options_.force, gain_ * (1 + period_ / kGrowth));
-  // What would take it further than twice the reach, or beyond the speed, is taken back.
-  if (spring_.v().norm() > 1.3 * options_.speed) gain_ *= 1 - 10 * period_;
+  const double way = (spring_.p() - start_).norm() / options_.reach;
+  const double speed = spring_.v().norm() / options_.speed;
+  if (std::max(way, speed) < kLittle) {
+    gain_ = std::min(options_.force, gain_ * (1 + period_ / kGrowth));
+  }
+  if (speed > 1) gain_ *= 1 - std::min(0.5, period_ / kRetreat);
   return gain_ * Sines(time);
 }
 

@@ -53,6 +53,14 @@ add_test(NAME consumer.command_loads_solvers_late
 set_tests_properties(consumer.command_loads_solvers_late PROPERTIES
   FIXTURES_REQUIRED vmech_installation)
 
+# The driver of docs/device-plugin.md, as its author compiles it, moves under the installed command.
+set(device ${consumer}/device.so)
+add_test(NAME consumer.device_plugin
+  COMMAND sh -c "${CMAKE_C_COMPILER} -std=c11 -Wall -Werror -shared -fPIC \
+-I${consumer}/prefix/include ${PROJECT_BINARY_DIR}/tests/hw_interface/guide_device.c \
+-o ${device} -lm && ${consumer}/prefix/bin/vmech device plugin:${device} --free")
+set_tests_properties(consumer.device_plugin PROPERTIES FIXTURES_REQUIRED vmech_installation)
+
 # A program with other settings of Eigen is told so.
 add_test(NAME consumer.refuses_other_settings_of_eigen
   COMMAND ${CMAKE_CXX_COMPILER} -std=c++20 -fsyntax-only -I${consumer}/prefix/include
