@@ -158,6 +158,9 @@ std::string DescribeDeadCentres(const LoadStudy& study, const LoadStudyResult& r
 std::string DescribeMotion(const LoadStudy& study, const LoadStudyResult& result) {
   const PoseSeries& poses = result.poses;
   std::string words;
+  if (study.drives.empty() && !study.hand) {
+    words = poses.size() > 1 ? "simulated" : "at rest";
+  }
   for (size_t i = 0; i < study.drives.size(); ++i) {
     const JointDrive& drive = study.drives[i];
     const Joint& joint = study.mechanism.joints[static_cast<size_t>(drive.joint)];

@@ -2,9 +2,9 @@
 
 #include "vmech/apps/drawing/mechanism_drawing.h"
 #include "vmech/apps/report/cycle.h"
-#include "vmech/base/encoding/base64.h"
 #include "vmech/apps/view/meshes.h"
 #include "vmech/apps/view/scene.h"
+#include "vmech/base/encoding/base64.h"
 #include "vmech/kinematics/loops/assembled_mechanism.h"
 
 namespace vmech {

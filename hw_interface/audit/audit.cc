@@ -177,8 +177,8 @@ void RecordingAudit::Parts::JudgePose(const TickRecord& tick) {
   hand.Add(Distance(tick.registration.HandInWorld(X_DH), picture.X_WH), ticks);
 }
 
-/// That of the virtual coupling, whose spring remembers where it slips. In the paper's way the share
-/// of the inertia goes with the pose, and the recording does not have it.
+/// That of the virtual coupling, whose spring remembers where it slips. In the paper's way the
+/// share of the inertia goes with the pose, and the recording does not have it.
 void RecordingAudit::Parts::JudgeStoredEnergy(const TickRecord& tick) {
   if (!promise.known || promise.paper || held.regrasps) return;
   const MovingFrame hand_W{FrameOf(tick.picture.X_WH), {}};

@@ -4,8 +4,8 @@
 #include <cstdint>
 
 #include "vmech/base/pose.h"
-#include "vmech/dynamics/in_hand/wrench_limit.h"
 #include "vmech/base/screw.h"
+#include "vmech/dynamics/in_hand/wrench_limit.h"
 #include "vmech/hw_interface/masters/device_info.h"
 
 namespace vmech {

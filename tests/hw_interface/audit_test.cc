@@ -25,8 +25,8 @@
 #include "vmech/hw_interface/recording/columns.h"
 #include "vmech/hw_interface/rendering/coupled_tick.h"
 #include "vmech/hw_interface/rendering/coupling_choice.h"
-#include "vmech/hw_interface/rendering/paper_choice.h"
 #include "vmech/hw_interface/rendering/mechanism_tick.h"
+#include "vmech/hw_interface/rendering/paper_choice.h"
 #include "vmech/kinematics/loops/assembled_mechanism.h"
 
 namespace vmech {
