@@ -44,9 +44,10 @@ std::string MotionScene(const StudyFile& file, const LoadStudyResult& loads,
 html::Markup PrintedMechanism(const LoadStudy& study, const LoadStudyResult& loads) {
   // As an image of its own: the styles of a drawing are not those of the page.
   return html::Markup::Raw(
-      "<figure class=\"printed\"><img alt=\"the mechanism at its start\" "
-      "src=\"data:image/svg+xml;base64," +
-      Base64(DrawMechanism(TreeOf(study, loads))) + "\"/></figure>\n");
+      "<figure class=\"printed\"><svg width=\"660\" height=\"460\" role=\"img\" "
+      "aria-label=\"the mechanism at its start\"><image width=\"660\" height=\"460\" "
+      "href=\"data:image/svg+xml;base64," +
+      Base64(DrawMechanism(TreeOf(study, loads))) + "\"/></svg></figure>\n");
 }
 
 }  // namespace vmech

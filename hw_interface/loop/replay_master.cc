@@ -22,6 +22,7 @@ DeviceInfo ReplayMaster::OnConfigure() {
   for (const TickRecord& tick : recording_.ticks) senses |= tick.state.valid;
   if (kind_ == ReplayKind::kSession) {
     info.name = recording_.device;
+    for (const TickRecord& tick : recording_.ticks) info.observed |= tick.observed;
     info.senses = senses;
     info.delay = recording_.delay;
     info.linear = recording_.linear;

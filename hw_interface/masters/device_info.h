@@ -43,6 +43,7 @@ struct DeviceInfo {
   bool takes_torque = false;      ///< CommandMode::kJointTorque
   bool has_dead_man = false;      ///< MasterState::dead_man is a real switch
   HandlePhysics linear, angular;  ///< at the nominal posture
+  bool observed = false;  ///< its samples come with the hand as an observer knew it: a recording's
   /// The arm behind the handle, where the master is one; needed for joint torques.
   std::shared_ptr<const ArmDescription> arm;
 };

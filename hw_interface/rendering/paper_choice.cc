@@ -75,8 +75,9 @@ PaperChoice ChoosePaper(const PaperRequest& request, const KinematicTree& tree, 
     tick.inertia = request.inertia;
   } else {
     tick.handle_masses = HandleMasses(frame, device);
-    tick.inertia_ratio = RatioFactor(request.estimator, HandObserver::Suits(device)) *
-                         tick.roll_off / (0.5 * device.period + device.delay);
+    tick.inertia_ratio =
+        RatioFactor(request.estimator, HandObserver::Suits(device) || device.observed) *
+        tick.roll_off / (0.5 * device.period + device.delay);
     if (device.linear.resolution > kFine) tick.inertia_ratio *= kFine / device.linear.resolution;
   }
   HandDynamics dynamics(tree, frame, tick.law.stiffness, q);

