@@ -71,19 +71,22 @@ struct HapticArguments {
   double rate = 1000;                ///< of the simulated master [Hz]
   double seconds = 20;               ///< 0: until interrupted
   std::string coupling = "virtual";  ///< or "paper"
-  double scale = 0;                  ///< virtual: of all forces; 0: what the device allows
+  double scale = 0;                  ///< of all forces; 0: what the device allows
   double stiffness = 0;              ///< paper: of the constraint [N/m]; 0: what the device allows
   double inertia = 0;                ///< paper: share that is felt; 0: what the device allows
-  bool gripper = false;              ///< hold while the gripper is closed
-  double motion_scale = 1;           ///< motion of the mechanism over that of the handle
-  int clutch = 0;                    ///< the button that lets the handle move alone; 0: none
-  std::vector<double> home;          ///< of the handle [m]; empty: where it is
-  std::vector<std::string> handle;   ///< "mass=0.3", ..: what is known of it better
-  bool view = false;                 ///< shown on a page
-  std::filesystem::path record;      ///< empty: no recording
-  bool free_running = false;         ///< as fast as it computes
-  std::optional<double> tolerance;   ///< instead of the mechanism's own
-  bool post_mortem = true;           ///< write the last ticks after a fault
+  std::string contact = "linear";    ///< paper: law of the constraint, see ParseContact
+  std::string estimator = "observer";  ///< paper: of the motion, see ParseEstimator
+  std::string wrench = "workless";     ///< paper: rule of w_d, see ParseWrench
+  bool gripper = false;                ///< hold while the gripper is closed
+  double motion_scale = 1;             ///< motion of the mechanism over that of the handle
+  int clutch = 0;                      ///< the button that lets the handle move alone; 0: none
+  std::vector<double> home;            ///< of the handle [m]; empty: where it is
+  std::vector<std::string> handle;     ///< "mass=0.3", ..: what is known of it better
+  bool view = false;                   ///< shown on a page
+  std::filesystem::path record;        ///< empty: no recording
+  bool free_running = false;           ///< as fast as it computes
+  std::optional<double> tolerance;     ///< instead of the mechanism's own
+  bool post_mortem = true;             ///< write the last ticks after a fault
   bool quiet = false;
 };
 int RunHaptic(const HapticArguments& arguments);

@@ -179,9 +179,9 @@ void AddHaptic(CLI::App* app, vmech::HapticArguments* haptic) {
       ->check(CLI::IsMember({"virtual", "paper"}))
       ->capture_default_str();
   command
-      ->add_option("--scale", haptic->scale,
-                   "virtual: force felt over the mechanism's own (default: 1, or what the device "
-                   "can render)")
+      ->add_option(
+          "--scale", haptic->scale,
+          "force felt over the mechanism's own (default: 1, or what the device can render)")
       ->check(CLI::Range(1e-6, 1.0, "1e-6..1"));
   command
       ->add_option("--stiffness", haptic->stiffness,
@@ -192,6 +192,23 @@ void AddHaptic(CLI::App* app, vmech::HapticArguments* haptic) {
       ->add_option("--inertia", haptic->inertia,
                    "paper: share of the inertia that is felt (default: what the device can render)")
       ->check(CLI::Range(0.0, 1.0, "0..1"));
+  command
+      ->add_option("--contact", haptic->contact,
+                   "paper: law of the constraint: linear, viscoelastic or hunt-crossley")
+      ->check(CLI::IsMember({"linear", "viscoelastic", "hunt-crossley"}))
+      ->capture_default_str();
+  command
+      ->add_option("--estimator", haptic->estimator,
+                   "paper: of velocities and accelerations: observer (knows the arm's own force), "
+                   "kalman, parabola, window or differences (the paper's)")
+      ->check(CLI::IsMember({"observer", "kalman", "parabola", "window", "differences"}))
+      ->capture_default_str();
+  command
+      ->add_option("--wrench", haptic->wrench,
+                   "paper: workless: the hand carries nothing that the joints could; paper: eq. "
+                   "(14) as printed")
+      ->check(CLI::IsMember({"workless", "paper"}))
+      ->capture_default_str();
   command->add_flag("--gripper", haptic->gripper,
                     "hold while the device's gripper is closed, the link that is nearest then; the "
                     "simulated operator lets go for a second now and then");

@@ -57,14 +57,15 @@ void DoubtSize(const Mechanism& mechanism, Doubts* doubts) {
         which, link.name, reach, mechanism.units.length));
   };
   const Link *longest = nullptr, *shortest = nullptr;
+  double most = 0, least = 0;
   for (const Link& link : mechanism.links) {
     const double reach = Reach(link);
     if (reach == 0) continue;
-    if (!longest || reach > Reach(*longest)) longest = &link;
-    if (!shortest || reach < Reach(*shortest)) shortest = &link;
+    if (!longest || reach > most) longest = &link, most = reach;
+    if (!shortest || reach < least) shortest = &link, least = reach;
   }
-  if (longest && Reach(*longest) > kLong) doubt(*longest, Reach(*longest), "longest");
-  if (shortest && Reach(*shortest) < kShort) doubt(*shortest, Reach(*shortest), "shortest");
+  if (longest && most > kLong) doubt(*longest, most, "longest");
+  if (shortest && least < kShort) doubt(*shortest, least, "shortest");
 }
 
 void DoubtGravity(const Mechanism& mechanism, Doubts* doubts) {

@@ -96,8 +96,7 @@ int main(int argc, char** argv) {
   const auto felt = [&](double hertz) {
     SimulatedMasterOptions arm;
     arm.hand = ImpedanceOf(Grip::kFirm);
-    const Posed X_DH =
-        ArmModel(std::make_shared<const ArmDescription>(SarcosMasterArm(arm.hand.mass))).X_DH();
+    const Posed X_DH = ArmModel(std::make_shared<const ArmDescription>(SarcosMasterArm())).X_DH();
     const Vector3d radius(std::cos(q[0]), std::sin(q[0]), 0);
     const Vector3d across(-radius.y(), radius.x(), 0);
     const double rate = 2 * std::numbers::pi * hertz;

@@ -75,15 +75,16 @@ Mechanism Assembled(const HapticArguments& arguments, Mechanism mechanism) {
 }
 
 RunnerOptions OptionsOf(const HapticArguments& arguments, const Matrix3d& R_WD,
-                        const SafetyOptions& safety) {
+                        const Rendering& rendering) {
   RunnerOptions options;
+  options.observer = rendering.observer;
   options.seconds = arguments.seconds;
   options.record = !arguments.record.empty();
   // A recording does not hold the arm: its replay is the same to the bit without the observer.
   if (options.record) options.observer.bandwidth = 0;
   if (arguments.post_mortem) options.post_mortem = arguments.file.stem().string() + "-fault.csv";
   options.R_WD = R_WD;
-  options.safety = safety;
+  options.safety = rendering.safety;
   options.gripper = arguments.gripper;
   options.notes = {{"file", arguments.file.string()},
                    {"grasp", arguments.grasp},
@@ -91,6 +92,9 @@ RunnerOptions OptionsOf(const HapticArguments& arguments, const Matrix3d& R_WD,
                    {"scale", fmt::to_string(arguments.scale)},
                    {"stiffness", fmt::to_string(arguments.stiffness)},
                    {"inertia", fmt::to_string(arguments.inertia)},
+                   {"contact", arguments.contact},
+                   {"estimator", arguments.estimator},
+                   {"wrench", arguments.wrench},
                    {"gripper", fmt::to_string(static_cast<int>(arguments.gripper))}};
   if (arguments.free_running) options.realtime.reset();
   return options;
@@ -156,7 +160,8 @@ std::unique_ptr<LoopClock> ClockOf(const HapticArguments& arguments) {
 int Hold(const HeldMechanism& held, HapticArguments arguments, Master* master, LoopClock* clock) {
   arguments.grasp = held.subject.mechanism.grasps[held.subject.grasp].name;
   Rendering rendering =
-      MakeRendering({arguments.coupling, arguments.scale, arguments.stiffness, arguments.inertia},
+      MakeRendering({arguments.coupling, arguments.scale, arguments.stiffness, arguments.inertia,
+                     arguments.contact, arguments.estimator, arguments.wrench},
                     held.tree, held.subject.grasp, held.q, master->info());
   ShownTick* shown = nullptr;
   if (arguments.view) {
@@ -165,8 +170,8 @@ int Hold(const HeldMechanism& held, HapticArguments arguments, Master* master, L
     shown = tick.get();
     rendering.tick = std::move(tick);
   }
-  Runner runner(OptionsOf(arguments, held.R_WD, SafetyFor(master->info(), rendering.safety)),
-                master, rendering.tick.get(), clock);
+  rendering.safety = SafetyFor(master->info(), rendering.safety);
+  Runner runner(OptionsOf(arguments, held.R_WD, rendering), master, rendering.tick.get(), clock);
   if (!arguments.quiet) fmt::print("{}{}", BoundsReport(master->info()), rendering.report);
   RunSummary summary;
   std::optional<HapticView> view;
@@ -221,6 +226,11 @@ HapticArguments ArgumentsOf(const Recording& recording, const ReplayArguments& r
   arguments.scale = number("scale");
   arguments.stiffness = number("stiffness");
   arguments.inertia = number("inertia");
+  for (const auto& [key, word] : {std::pair{"contact", &arguments.contact},
+                                  {"estimator", &arguments.estimator},
+                                  {"wrench", &arguments.wrench}}) {
+    if (const std::string text = recording.Note(key); !text.empty()) *word = text;
+  }
   arguments.gripper = number("gripper") != 0;
   arguments.seconds = recording.period * static_cast<double>(recording.ticks.size());
   arguments.free_running = !replay.view;

@@ -21,7 +21,7 @@
 #include "vmech/hw_interface/remote/udp_master.h"
 #include "vmech/hw_interface/rendering/coupling_choice.h"
 #include "vmech/hw_interface/rendering/hand_motion.h"
-#include "vmech/hw_interface/safety/stability.h"
+#include "vmech/hw_interface/rendering/paper_choice.h"
 #include "vmech/mechanisms/files/document.h"
 #include "vmech/mechanisms/files/reader.h"
 #include "vmech/studies/study_reader.h"
@@ -61,8 +61,7 @@ std::unique_ptr<Master> MakeSimulated(const MasterRequest& request) {
   SimulatedMasterOptions options;
   options.period = 1 / request.rate;
   options.hand = ImpedanceOf(request.grip);
-  const Posed X_DH =
-      ArmModel(std::make_shared<const ArmDescription>(SarcosMasterArm(options.hand.mass))).X_DH();
+  const Posed X_DH = ArmModel(std::make_shared<const ArmDescription>(SarcosMasterArm())).X_DH();
   options.motion = request.law ? HandMotionOf(*request.law, request.end,
                                               GraspedAt(request.R_WD, X_DH, request.X_WG))
                                : Wander(X_DH, kReach, kTurn, 1);
@@ -94,6 +93,12 @@ std::unique_ptr<Master> MakeHaply(const std::string& port) {
   return std::make_unique<HaplyMaster>(options);
 }
 
+std::string ScaleReport(double scale, double wanted) {
+  if (scale == 1) return {};
+  return fmt::format("forces are felt at {:.3g} % of the mechanism's{}\n", 100 * scale,
+                     wanted > 0 ? "" : ": what this device can render (--scale)");
+}
+
 Rendering MakeCoupled(const RenderingRequest& request, const KinematicTree& tree, int grasp,
                       const VectorXd& q, const DeviceInfo& device) {
   CoupledTickOptions options;
@@ -107,26 +112,53 @@ Rendering MakeCoupled(const RenderingRequest& request, const KinematicTree& tree
       "virtual coupling: {:.4g} N/m, {:.4g} N m/rad; inertia {:.3g} times the handle's, "
       "weight at the hand {:.3g} N\n",
       K[0], K[3], choice.inertia_ratio, choice.weight);
-  if (options.scale != 1) {
-    report += fmt::format("forces are felt at {:.3g} % of the mechanism's{}\n", 100 * options.scale,
-                          request.scale > 0 ? "" : ": what this device can render (--scale)");
-  }
+  report += ScaleReport(options.scale, request.scale);
   return {std::make_unique<CoupledTick>(tree, grasp, q, device.period, options), choice.Safety(),
-          std::move(report)};
+          HandObserverOptions{}, std::move(report)};
+}
+
+ContactKind ParseContact(const std::string& word) {
+  if (word == "linear") return ContactKind::kLinear;
+  if (word == "viscoelastic") return ContactKind::kViscoelastic;
+  if (word == "hunt-crossley") return ContactKind::kHuntCrossley;
+  throw OptionError(
+      fmt::format("--contact: {} is not one of linear, viscoelastic, hunt-crossley", Quoted(word)));
+}
+
+EstimatorKind ParseEstimator(const std::string& word) {
+  if (word == "observer") return EstimatorKind::kObserver;
+  if (word == "kalman") return EstimatorKind::kKalman;
+  if (word == "parabola") return EstimatorKind::kQuadraticFit;
+  if (word == "window") return EstimatorKind::kAdaptiveWindow;
+  if (word == "differences") return EstimatorKind::kFiniteDifferences;
+  throw OptionError(
+      fmt::format("--estimator: {} is not one of observer, kalman, parabola, window, differences",
+                  Quoted(word)));
+}
+
+WrenchRule ParseWrench(const std::string& word) {
+  if (word == "workless") return WrenchRule::kWorkless;
+  if (word == "paper") return WrenchRule::kPaper;
+  throw OptionError(fmt::format("--wrench: {} is not one of workless, paper", Quoted(word)));
 }
 
 Rendering MakePaper(const RenderingRequest& request, const KinematicTree& tree, int grasp,
                     const VectorXd& q, const DeviceInfo& device) {
-  MechanismTickOptions options;
-  options.law = ContactLawFor(device, request.stiffness);
-  options.inertia = request.inertia > 0
-                        ? request.inertia
-                        : StableInertiaShare(tree, GraspFrameOf(tree, grasp), q, device);
-  std::string report =
-      fmt::format("constraint: {:.4g} N/m, {:.4g} N m/rad; {:.3g} % of the inertia\n",
-                  options.law.stiffness[0], options.law.stiffness[3], 100 * options.inertia);
-  return {std::make_unique<MechanismTick>(tree, grasp, q, device, options), SafetyOptions{},
-          std::move(report)};
+  const PaperChoice choice =
+      ChoosePaper({request.scale, request.stiffness, request.inertia, ParseContact(request.contact),
+                   ParseEstimator(request.estimator), ParseWrench(request.wrench)},
+                  tree, grasp, q, device);
+  const MechanismTickOptions& options = choice.tick;
+  std::string report = fmt::format(
+      "the paper's way: constraint {:.4g} N/m, {:.4g} N m/rad; inertia {:.3g} times the handle's "
+      "here, ",
+      options.law.stiffness[0], options.law.stiffness[3], choice.inertia_ratio);
+  report += request.inertia > 0 ? fmt::format("{:.3g} % of it felt", 100 * request.inertia)
+                                : fmt::format("felt up to {:.3g}", options.inertia_ratio);
+  report += fmt::format("; weight at the hand {:.3g} N\n", choice.weight.head<3>().norm());
+  report += ScaleReport(options.scale, request.scale);
+  return {std::make_unique<MechanismTick>(tree, grasp, q, device, options), choice.safety,
+          choice.observer, std::move(report)};
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "vmech/hw_interface/estimation/hand_observer.h"
 #include "vmech/hw_interface/masters/simulated_master.h"
 #include "vmech/hw_interface/masters/workspace_master.h"
 #include "vmech/hw_interface/rendering/coupled_tick.h"
@@ -81,19 +82,22 @@ void WriteHandMotion(const std::filesystem::path& file, const Recording& recordi
 /// How a mechanism is rendered; zeros leave it to the device.
 struct RenderingRequest {
   std::string coupling = "virtual";   ///< or "paper"
-  double scale = 0;                   ///< virtual: of all forces
+  double scale = 0;                   ///< of all forces
   double stiffness = 0, inertia = 0;  ///< paper: of the constraint [N/m]; share of the inertia
+  // paper: words for ContactKind, EstimatorKind and WrenchRule.
+  std::string contact = "linear", estimator = "observer", wrench = "workless";
 };
 
 /// The virtual side of a session, what it asks of the safety filter, and both in words.
 struct Rendering {
   std::unique_ptr<Tick> tick;
   SafetyOptions safety;
+  HandObserverOptions observer;
   std::string report;
 };
 
 /// A mechanism held at its grasp in the closed pose q, for a device. Keeps a reference to the tree.
-/// @throws std::invalid_argument as the ticks.
+/// @throws std::invalid_argument as the ticks; OptionError for an unknown word.
 Rendering MakeRendering(const RenderingRequest& request, const KinematicTree& tree, int grasp,
                         const VectorXd& q, const DeviceInfo& device);
 

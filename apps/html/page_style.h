@@ -85,6 +85,7 @@ footer { margin-top: 4rem; padding-top: 1rem; border-top: 1px solid var(--line);
   .tile { padding: 0.7rem 0.8rem; overflow-wrap: anywhere; }
   .tile .value { font-size: 1.35rem; }
   figure svg[width="660"] { max-width: none; width: 32rem; } }
+.printed { display: none; }
 @media print {
   :root { --paper: #ffffff; --panel: #f6f7f9; --ink: #000000; --muted: #444444; --line: #bbbbbb; }
   html { font-size: 10pt; color-scheme: light; }
@@ -96,6 +97,7 @@ footer { margin-top: 4rem; padding-top: 1rem; border-top: 1px solid var(--line);
   th, td { padding: 0.18rem 0.5rem; }
   details { margin: 0.4rem 0; }
   details.screen { display: none; }
+  .printed { display: block; }
   h2, h3, h3 + p, caption, thead, summary { break-after: avoid; }
   figure, .figures, tr, li, .tile, .notice { break-inside: avoid; }
   p, li { orphans: 3; widows: 3; }

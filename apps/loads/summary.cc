@@ -1,10 +1,14 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "vmech/apps/loads/dead_centres.h"
 #include "vmech/apps/loads/tables.h"
 #include "vmech/dynamics/loads/load_result.h"
+#include "vmech/dynamics/loads/motion/freedom_range.h"
+#include "vmech/dynamics/loads/motion/grasp_path.h"
+#include "vmech/dynamics/loads/motion/transmission_angle.h"
 #include "vmech/dynamics/loads/open_components.h"
 #include "vmech/mechanisms/freedoms.h"
 
@@ -18,6 +22,46 @@ constexpr const char* kComponents[] = {"fx", "fy", "fz", "mx", "my", "mz"};
 /// JSON has no infinity; what is unlimited is null.
 Json Finite(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+/// How far and how fast a joint goes, by its freedoms.
+Json MotionSummary(const LoadStudy& study, const LoadStudyResult& loads, int j) {
+  const Joint& joint = study.mechanism.joints[static_cast<size_t>(j)];
+  Json freedoms = Json::array();
+  for (int k = 0; k < vmech::FreedomsOf(joint.type); ++k) {
+    const FreedomRange range = FindRange(study, loads, j, k);
+    freedoms.push_back({{"name", NameOfFreedom(joint.type, k)},
+                        {"least", range.least.value},
+                        {"least_at", range.least.time},
+                        {"greatest", range.greatest.value},
+                        {"greatest_at", range.greatest.time},
+                        {"stroke", range.stroke()},
+                        {"largest_rate", range.largest_rate},
+                        {"largest_acceleration", range.largest_acceleration}});
+  }
+  return freedoms;
+}
+
+Json TransmissionSummary(const LoadStudy& study, const LoadStudyResult& loads) {
+  const std::optional<TransmissionAngle> transmission = FindTransmissionAngle(study, loads);
+  if (!transmission) return nullptr;
+  const auto name = [&](int link) { return study.mechanism.links[static_cast<size_t>(link)].name; };
+  return {{"input", name(transmission->input)},
+          {"coupler", name(transmission->coupler)},
+          {"output", name(transmission->output)},
+          {"least", Finite(transmission->angles[transmission->least_pose])},
+          {"least_at", loads.poses.arrays().times[transmission->least_pose]}};
+}
+
+Json GraspSummary(const LoadStudy& study, const LoadStudyResult& loads) {
+  Json grasps = Json::array();
+  for (size_t g = 0; g < study.mechanism.grasps.size(); ++g) {
+    const GraspPath path = FindGraspPath(study, loads, static_cast<int>(g));
+    if (path.p_WG.empty()) continue;
+    grasps.push_back({{"name", study.mechanism.grasps[g].name},
+                      {"path_extent", {path.extent.x(), path.extent.y(), path.extent.z()}}});
+  }
+  return grasps;
 }
 
 Json JointSummary(const StudyFile& file, const LoadStudyResult& loads, size_t j) {
@@ -34,8 +78,11 @@ Json JointSummary(const StudyFile& file, const LoadStudyResult& loads, size_t j)
   for (size_t k = 0; k < matters.size(); ++k) {
     if (matters[k] == Certainty::kNotDetermined) open.push_back(kComponents[k]);
   }
+  const std::optional<TimeRatio> ratio = FindTimeRatio(file.study, loads, static_cast<int>(j));
   return {{"name", file.study.mechanism.joints[j].name},
           {"type", NameOf(file.study.mechanism.joints[j].type)},
+          {"motion", MotionSummary(file.study, loads, static_cast<int>(j))},
+          {"time_ratio", ratio ? Finite(ratio->ratio()) : Json(nullptr)},
           {"peak_radial_force", radial},
           {"peak_axial_force", axial},
           {"peak_tilting_moment", tilting},
@@ -107,6 +154,8 @@ std::string SummaryJson(const StudyFile& file, const StudyOutcome& outcome) {
   for (size_t j = 0; j < file.study.mechanism.joints.size(); ++j) {
     json["joints"].push_back(JointSummary(file, loads, j));
   }
+  json["transmission_angle"] = TransmissionSummary(file.study, loads);
+  json["grasps"] = GraspSummary(file.study, loads);
   json["bearings"] = Json::array();
   for (const BearingOutcome& bearing : outcome.bearings) {
     json["bearings"].push_back(BearingSummary(file, bearing));

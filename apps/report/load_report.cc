@@ -325,7 +325,8 @@ std::string RenderLoadReport(const StudyFile& file, const StudyOutcome& outcome,
   CheckReport(report);
   const Cycle cycle = CycleOf(report.study, report.result);
   Markup body = Header(report, cycle);
-  body += html::Heading(2, "The mechanism in motion") + ViewPlace();
+  body += html::Heading(2, "The mechanism in motion") + ViewPlace() +
+          PrintedMechanism(report.study, report.result);
   body += JointOverview(report.study, report.result, cycle);
   body += CertaintySection(report.study, report.result);
   body += BearingSections(file, outcome);

@@ -1,6 +1,8 @@
 #include "vmech/apps/report/motion_scene.h"
 
+#include "vmech/apps/drawing/mechanism_drawing.h"
 #include "vmech/apps/report/cycle.h"
+#include "vmech/base/encoding/base64.h"
 #include "vmech/apps/view/meshes.h"
 #include "vmech/apps/view/scene.h"
 #include "vmech/kinematics/loops/assembled_mechanism.h"
@@ -37,6 +39,14 @@ std::string MotionScene(const StudyFile& file, const LoadStudyResult& loads,
   }
   scene.session = session;
   return SceneJson(scene);
+}
+
+html::Markup PrintedMechanism(const LoadStudy& study, const LoadStudyResult& loads) {
+  // As an image of its own: the styles of a drawing are not those of the page.
+  return html::Markup::Raw(
+      "<figure class=\"printed\"><img alt=\"the mechanism at its start\" "
+      "src=\"data:image/svg+xml;base64," +
+      Base64(DrawMechanism(TreeOf(study, loads))) + "\"/></figure>\n");
 }
 
 }  // namespace vmech

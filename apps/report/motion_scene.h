@@ -3,6 +3,7 @@
 #include <string>
 #include <string_view>
 
+#include "vmech/apps/html/markup.h"
 #include "vmech/studies/study.h"
 
 namespace vmech {
@@ -10,5 +11,8 @@ namespace vmech {
 /// The scene of a study's motion for the page (SceneJson). `session`: as Scene::session.
 std::string MotionScene(const StudyFile& file, const LoadStudyResult& loads,
                         std::string_view version, std::string_view session = "");
+
+/// The mechanism at its start as a picture that is seen on paper alone, where nothing moves.
+html::Markup PrintedMechanism(const LoadStudy& study, const LoadStudyResult& loads);
 
 }  // namespace vmech

@@ -61,30 +61,18 @@ RankSplit SplitByRank(const MatrixXd& A, double tolerance) {
           decomposition.pseudoInverse()};
 }
 
-RowSpace::RowSpace(const MatrixXd& A, double tolerance) : columns_(A.cols()) {
-  if (A.size() == 0) return;
-  qr_.compute(A.transpose());
-  // Eigen's threshold is relative to the largest pivot; where that is rounding, nothing counts.
-  if (qr_.maxPivot() <= tolerance) return;
-  qr_.setThreshold(tolerance / std::min(1.0, qr_.maxPivot()));
-  rank_ = qr_.rank();
-}
-
-MatrixXd RowSpace::Basis() const {
-  const MatrixXd first = MatrixXd::Identity(columns_, rank_);
-  return rank_ == 0 ? first : MatrixXd(qr_.householderQ() * first);
-}
-
-MatrixXd RowSpace::FromNullSpace(const MatrixXd& coordinates) const {
-  MatrixXd last = MatrixXd::Zero(columns_, coordinates.cols());
-  last.bottomRows(columns_ - rank_) = coordinates;
-  return rank_ == 0 ? last : MatrixXd(qr_.householderQ() * last);
-}
-
 NullSpace FindNullSpace(const MatrixXd& A, double tolerance) {
-  const RowSpace rows(A, tolerance);
-  const Eigen::Index free = A.cols() - rows.rank();
-  return {rows.rank(), rows.FromNullSpace(MatrixXd::Identity(free, free))};
+  const Eigen::Index n = A.cols();
+  const NullSpace whole{0, MatrixXd::Identity(n, n)};
+  if (A.size() == 0) return whole;
+  Eigen::ColPivHouseholderQR<MatrixXd> qr(A.transpose());
+  // Eigen's threshold is relative to the largest pivot; where that is rounding, nothing counts.
+  if (qr.maxPivot() <= tolerance) return whole;
+  qr.setThreshold(tolerance / std::min(1.0, qr.maxPivot()));
+  const Eigen::Index rank = qr.rank();
+  MatrixXd last = MatrixXd::Zero(n, n - rank);
+  last.bottomRows(n - rank).setIdentity();
+  return {static_cast<int>(rank), qr.householderQ() * last};
 }
 
 std::vector<int> MostIndependentRows(const MatrixXd& A, int count) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/QR>
 #include <vector>
 
 #include "vmech/base/pose.h"
@@ -33,22 +32,6 @@ struct NullSpace {
 /// For matrices whose entries are of the order of 1: pivots below `tolerance`, or `tolerance` times
 /// the largest, count as zero. A matrix of nothing but rounding has rank 0.
 NullSpace FindNullSpace(const MatrixXd& A, double tolerance);
-
-/// The same without forming the null space, which may be large: memory is that of A.
-class RowSpace {
- public:
-  RowSpace(const MatrixXd& A, double tolerance);
-
-  int rank() const { return static_cast<int>(rank_); }
-  /// Orthonormal basis of the rows [columns, rank].
-  MatrixXd Basis() const;
-  /// Vectors of the null space from their coordinates in FindNullSpace's basis [columns - rank, n].
-  MatrixXd FromNullSpace(const MatrixXd& coordinates) const;
-
- private:
-  Eigen::Index columns_ = 0, rank_ = 0;
-  Eigen::ColPivHouseholderQR<MatrixXd> qr_;
-};
 
 /// A matrix A of the order of 1, and what is left of it when pivots that are small in the sense of
 /// FindNullSpace count as zero.

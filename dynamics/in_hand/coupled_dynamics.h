@@ -44,6 +44,11 @@ class CoupledDynamics {
   void GraspAt(const GraspFrame& grasp) noexcept;
   /// Nobody holds it: the coupling exerts nothing until GraspAt.
   void LetGo() noexcept;
+  /// The largest wrench that may pull from now on, beside that of the coupling itself.
+  void Within(const WrenchLimit& room) noexcept { coupling_.Within(room); }
+  /// Energy [J] that the mechanism has and the hand did not give: the next step takes it out of the
+  /// velocities, as far as they have it.
+  void Owe(double energy) noexcept { energy_limit_.Owe(energy); }
   /// A step with the hand at X_WH, moving with V_WH [v; w] at Ho, world axes; or with its frame in
   /// W.
   [[nodiscard]] CoupledStatus Step(const Posed& X_WH, const Vector6d& V_WH) noexcept;

@@ -19,6 +19,8 @@ class EnergyLimit {
     lost_ = 0;
     return factor;
   }
+  /// The next step has to make up for this much too [J].
+  void Owe(double energy) noexcept { lost_ -= energy; }
   void Forget() noexcept { lost_ = 0; }
 
  private:

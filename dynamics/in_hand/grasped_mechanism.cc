@@ -112,8 +112,12 @@ void GraspedMechanism::SetVelocities(const VectorXd& v) noexcept {
   ForwardVelocities(tree_, v.data(), &ws_);
 }
 
+void GraspedMechanism::ComputeMomenta(const VectorXd& v, VectorXd* momenta) noexcept {
+  Momenta(tree_, inertias_, v.data(), &ws_, momenta->data());
+}
+
 void GraspedMechanism::ComputeLoopBias(double s, VectorXd* d) noexcept {
-  VelocityProducts(tree_, &ws_);
+  ComputeVelocityProducts();
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
     LoopBias(tree_, ws_, static_cast<int>(l), s, d->data() + tree_.loops[l].row);
   }
@@ -137,20 +141,57 @@ void GraspedMechanism::ComputeForces(VectorXd* tau) noexcept {
 
 void GraspedMechanism::LoadJoints(const Screw& w, const VectorXd& mu,
                                   std::vector<Wrenchd>* joints) noexcept {
-  NewtonEuler<double>(tree_, inertias_, nullptr, &ws_, nullptr);
-  ApplyAlongBranch(tree_, grasp_.node, WrenchAt(G_.p, w.linear, w.angular), &ws_);
+  StartLoads(w);
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
     const Loop& loop = tree_.loops[l];
     Screw W;
     for (int k = 0; k < loop.rows; ++k) W -= mu[loop.row + k] * ws_.loops[l].wrench[k];
-    ApplyAroundLoop(loop, W, &ws_);
-    joints_[loop.joint].W = W;
+    LoadLoop(loop, W);
   }
+  FinishLoads(joints);
+}
+
+void GraspedMechanism::LoadJoints(const Screw& w, const std::vector<Screw>& cut,
+                                  std::vector<Wrenchd>* joints) noexcept {
+  StartLoads(w);
+  for (size_t l = 0; l < tree_.loops.size(); ++l) {
+    LoadLoop(tree_.loops[l], WrenchAt(ws_.loops[l].F.p, cut[l].linear, cut[l].angular));
+  }
+  FinishLoads(joints);
+}
+
+void GraspedMechanism::StartLoads(const Screw& w) noexcept {
+  NewtonEuler<double>(tree_, inertias_, nullptr, &ws_, nullptr);
+  ApplyAlongBranch(tree_, grasp_.node, WrenchAt(G_.p, w.linear, w.angular), &ws_);
+}
+
+void GraspedMechanism::LoadLoop(const Loop& loop, const Screw& W) noexcept {
+  ApplyAroundLoop(loop, W, &ws_);
+  joints_[loop.joint].W = W;
+}
+
+void GraspedMechanism::FinishLoads(std::vector<Wrenchd>* joints) noexcept {
   TreeJointWrenches(tree_, ws_, &joints_);
   JointFrames(tree_, ws_, &joints_);
   for (size_t j = 0; j < joints->size(); ++j) {
     (*joints)[j] = WrenchIn(joints_[j].F, joints_[j].W);
   }
+}
+
+void GraspedMechanism::ComputeCutRows(int loop, MatrixXd* B) const noexcept {
+  B->setZero();
+  const Double4& p = ws_.loops[loop].F.p;
+  for (const LoopColumn& c : tree_.loops[loop].columns) {
+    const Screw S = c.sign * ws_.S[c.v];
+    StoreDouble4(VelocityAt(p, S), &(*B)(0, c.v));
+    StoreDouble4(S.angular, &(*B)(4, c.v));
+  }
+}
+
+Screw GraspedMechanism::CutTwist(int loop, const VectorXd& v) const noexcept {
+  Screw V;
+  for (const LoopColumn& c : tree_.loops[loop].columns) V += (c.sign * v[c.v]) * ws_.S[c.v];
+  return {VelocityAt(ws_.loops[loop].F.p, V), V.angular};
 }
 
 double GraspedMechanism::KineticEnergy() const noexcept {

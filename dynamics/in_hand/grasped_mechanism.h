@@ -49,8 +49,11 @@ class GraspedMechanism {
   /// Takes v [nv].
   void SetVelocities(const VectorXd& v) noexcept;
   double KineticEnergy() const noexcept;  ///< at these [J]
-  /// Takes v' = 0, and finds what comes of v alone, as all that follows needs it; d = s C' v,
-  /// scaled and padded like C.
+  /// M v [nv]; forgets the velocities.
+  void ComputeMomenta(const VectorXd& v, VectorXd* momenta) noexcept;
+  /// Takes v' = 0, and finds what comes of v alone, as all that follows needs it.
+  void ComputeVelocityProducts() noexcept { VelocityProducts(tree_, &ws_); }
+  /// The same, and d = s C' v, scaled and padded like C.
   void ComputeLoopBias(double s, VectorXd* d) noexcept;
   /// The acceleration of Go for v' = 0.
   Screw GraspBias() const noexcept;
@@ -63,11 +66,25 @@ class GraspedMechanism {
   /// multipliers of M v' + h = J' w - C' mu.
   void LoadJoints(const Screw& w, const VectorXd& mu, std::vector<Wrenchd>* joints) noexcept;
 
+  /// The same where the cut joints exert `cut` on their second links, each about the origin of its
+  /// second anchor, world axes.
+  void LoadJoints(const Screw& w, const std::vector<Screw>& cut,
+                  std::vector<Wrenchd>* joints) noexcept;
+
+  // A loop cut through, paper eq. (4) to (6), about the origin of the cut joint's second anchor.
+  /// B [8, nv], padded like that of ComputeWeightedJacobian: the second anchor moves by B v in the
+  /// first.
+  void ComputeCutRows(int loop, MatrixXd* B) const noexcept;
+  Screw CutTwist(int loop, const VectorXd& v) const noexcept;  ///< B v
+
   /// Zero with all centres of gravity at the height of the reference point [J].
   double WeightEnergy() const noexcept { return vmech::WeightEnergy(tree_, inertias_); }
 
  private:
   void ScaleLoopErrors() noexcept;
+  void StartLoads(const Screw& w) noexcept;
+  void LoadLoop(const Loop& loop, const Screw& W) noexcept;
+  void FinishLoads(std::vector<Wrenchd>* joints) noexcept;
 
   const KinematicTree& tree_;
   GraspFrame grasp_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "vmech/base/linear_algebra/linear_algebra.h"
@@ -21,6 +22,7 @@ constexpr double kLoopWeight = 1e5;
 /// Of the trace: holds what neither hand nor loops move, at a dead centre.
 constexpr double kDamping = 1e-11;
 constexpr double kHeld = 1e-8;  // what neither moves anywhere
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 Vector6d RowsThatCount(Vector6d K, GraspKind kind) {
   if (kind == GraspKind::kPoint) K.tail<3>().setZero();
@@ -36,15 +38,18 @@ double MeanStiffness(const Vector6d& K, double length) {
 }  // namespace
 
 HandDynamics::HandDynamics(const KinematicTree& tree, const GraspFrame& grasp,
-                           const Vector6d& stiffness, const VectorXd& q)
+                           const Vector6d& stiffness, const VectorXd& q, WrenchRule rule)
     : tree_(tree),
+      rule_(rule),
       K_(RowsThatCount(stiffness, grasp.kind)),
       root_K_(K_.cwiseSqrt()),
       pose_(tree, grasp),
       passive_(tree),
       system_(tree.nv, static_cast<int>(pose_.C().rows())),
+      paper_system_(tree.nv, 0),
       rootKJ_(MatrixXd::Zero(PaddedSize(6), tree.nv)),
       A_(MatrixXd::Zero(tree.nv, tree.nv)),
+      curved_A_(A_),
       damping_(VectorXd::Constant(tree.nv, kDamping)),
       q_(q),
       v_(VectorXd::Zero(tree.nv)),
@@ -56,6 +61,7 @@ HandDynamics::HandDynamics(const KinematicTree& tree, const GraspFrame& grasp,
       d_(pose_.e2()),
       zero_(d_),
       mu_(d_),
+      cut_(tree.loops.size()),
       joints_(tree.mechanism.joints.size()) {
   RequireCoordinates("HandDynamics: q", tree, q);
   const double k = MeanStiffness(K_, tree.length);
@@ -91,22 +97,91 @@ void HandDynamics::HoldIdleFreedoms() {
 }
 
 bool HandDynamics::Evaluate(const Vector6d& V_WG, const Vector6d& A_WG, double inertia) noexcept {
-  if (!Factor()) return false;
-  SolveMotion(V_WG, zero_, &v_);
+  if (!FindVelocities(V_WG, nullptr)) return false;
   // s (M v' + c(q, v)) = M (s v') + c(q, s^1/2 v).
   felt_v_ = std::sqrt(inertia) * v_;
   pose_.SetVelocities(felt_v_);
   pose_.ComputeLoopBias(-1, &d_);
   SolveMotion(inertia * A_WG - Vector6Of(pose_.GraspBias()), d_, &vdot_);
-  pose_.SetAccelerations(vdot_);
+  return Evaluate(v_, felt_v_, vdot_);
+}
+
+bool HandDynamics::FindVelocities(const Vector6d& V_WH, const MatrixXd* S,
+                                  const Vector3d& turn) noexcept {
+  if (!Factor(S)) return false;
+  turn_ = turn;
+  Vector6d V = V_WH;
+  V.tail<3>() -= 0.5 * turn.cross(V_WH.tail<3>());
+  SolveMotion(V, zero_, &v_);
+  return std::isfinite(v_.sum());
+}
+
+double HandDynamics::InertiaRatio(const Vector6d& D) noexcept {
+  SolveMotion(heaviest_, zero_, &x_);
+  pose_.ComputeMomenta(x_, &tau_);
+  FindWrench();
+  Vector6d next;
+  for (int i = 0; i < 6; ++i) next[i] = D[i] > 0 ? w_d_[i] / D[i] : 0;
+  const double before = heaviest_.dot(D.cwiseProduct(heaviest_));
+  const double after = next.dot(D.cwiseProduct(next));
+  if (!(after > 0) || !(before > 0)) return 0;
+  heaviest_ = next / std::sqrt(after);
+  return std::sqrt(after / before);
+}
+
+bool HandDynamics::Evaluate(const VectorXd& v, const VectorXd& u, const VectorXd& udot) noexcept {
+  pose_.SetVelocities(u);
+  pose_.ComputeVelocityProducts();
+  pose_.SetAccelerations(udot);
   pose_.ComputeForces(&tau_);
-  passive_.AddForces(q_, v_, &tau_);
-  system_.Solve(A_, pose_.C(), tau_, zero_, &x_);
-  w_d_ = K_.cwiseProduct(Vector6Of(pose_.Twist(x_)));
+  passive_.AddForces(q_, v, &tau_);
+  if (rule_ == WrenchRule::kPaper) {
+    FindPaperWrench();
+    return w_d_.allFinite();
+  }
+  FindWrench();
+  // The joints carry what moves the mechanism at Go; the hand beside it feels another wrench.
+  Vector6d felt = w_d_;
+  felt.tail<3>() += 0.5 * turn_.cross(w_d_.tail<3>());
+  if (curved_ && FactorWithoutCurvature()) FindWrench();
   system_.ComputeMultipliers(pose_.C(), zero_, &mu_);
   mu_ = -mu_;
   pose_.LoadJoints(ScrewOf(w_d_), mu_, &joints_);
+  w_d_ = felt;
   return w_d_.allFinite();
+}
+
+/// w_d = P' tau.
+void HandDynamics::FindWrench() noexcept {
+  system_.Solve(curved_ ? curved_A_ : A_, pose_.C(), tau_, zero_, &x_);
+  w_d_ = K_.cwiseProduct(Vector6Of(pose_.Twist(x_)));
+}
+
+/// The least squares of eq. (14) by its normal equations: with B the six rows of every cut,
+///
+///   (J'J + B'B) x = tau,   w_d = J x,   w_cut = B x,     newtons and newton metres alike.
+void HandDynamics::FindPaperWrench() noexcept {
+  const Vector6d rows = root_K_.cwiseSign();  // those that a point grasp keeps
+  pose_.ComputeWeightedJacobian(ScrewOf(rows), &rootKJ_);
+  curved_A_.setZero();
+  paper_system_.AddGram(rootKJ_, &curved_A_);
+  for (size_t l = 0; l < cut_.size(); ++l) {
+    pose_.ComputeCutRows(static_cast<int>(l), &rootKJ_);
+    paper_system_.AddGram(rootKJ_, &curved_A_);
+  }
+  curved_A_.diagonal() += curved_A_.trace() * damping_;
+  if (!paper_system_.Factor(curved_A_)) {
+    w_d_.setConstant(kNan);
+    return;
+  }
+  paper_system_.SolveOnce(pose_.C(), tau_, zero_, &x_);
+  w_d_ = rows.cwiseProduct(Vector6Of(pose_.Twist(x_)));
+  for (size_t l = 0; l < cut_.size(); ++l) cut_[l] = pose_.CutTwist(static_cast<int>(l), x_);
+  pose_.LoadJoints(ScrewOf(w_d_), cut_, &joints_);
+}
+
+Vector6d HandDynamics::Twist(const VectorXd& v) const noexcept {
+  return Vector6Of(pose_.Twist(v));
 }
 
 Posed HandDynamics::SetPose(const VectorXd& q) noexcept {
@@ -121,20 +196,30 @@ Posed HandDynamics::SetPose(const VectorXd& q, const TreeWorkspace<double>& at_q
   return pose_.X_WG();
 }
 
-bool HandDynamics::Factor() noexcept {
+bool HandDynamics::Factor(const MatrixXd* S) noexcept {
   pose_.ComputeWeightedJacobian(ScrewOf(root_K_), &rootKJ_);
   A_.setZero();
   system_.AddGram(rootKJ_, &A_);
   A_.diagonal() += A_.trace() * damping_;
   system_.SetConstraints(pose_.C());
+  curved_ = S != nullptr;
+  if (curved_) {
+    curved_A_ = A_ + *S;
+    curved_ = system_.Factor(curved_A_);
+  }
+  return curved_ || FactorWithoutCurvature();
+}
+
+bool HandDynamics::FactorWithoutCurvature() noexcept {
+  curved_ = false;
   return system_.Factor(A_);
 }
 
-/// min |J x - b|_K subject to C x = d.
+/// min |J x - b|_K subject to C x = d; beside the path, with S.
 void HandDynamics::SolveMotion(const Vector6d& b, const VectorXd& d, VectorXd* x) noexcept {
   right_.setZero();
   pose_.AddForces(ScrewOf(K_.cwiseProduct(b)), &right_);
-  system_.Solve(A_, pose_.C(), right_, d, x);
+  system_.Solve(curved_ ? curved_A_ : A_, pose_.C(), right_, d, x);
 }
 
 double HandDynamics::Energy() const noexcept {

@@ -8,6 +8,12 @@
 
 namespace vmech {
 
+/// How w_d is found among the wrenches that move the mechanism as it moves.
+enum class WrenchRule {
+  kWorkless,  ///< w_d along the free motion alone: nothing that the constraints could carry
+  kPaper,     ///< paper eq. (14) as printed: w_d and the cut wrenches in one minimum-norm step
+};
+
 /// Dynamics of a mechanism that a hand moves, for the kHz path: what the hand must exert, and what
 /// every joint carries, at one closed pose, from one factorisation and without a null space or a
 /// rank decision. With the grasp's Jacobian J and the loops' C, a quantity x of the free motion
@@ -23,6 +29,15 @@ namespace vmech {
 /// in the metric K, that moves the mechanism so; mu, the wrenches of the cut joints, the smallest
 /// that then keep the loops closed. Components that statics does not determine thus follow a rule
 /// of their own, cheaper than those of a load study; certain components are the same.
+///
+/// A hand beside the path of the grasp frame is not the same as one on it. With S the second
+/// derivatives of 1/2 e1'K e1 + mu' e2 at the nearest pose,
+///
+///   (J'K J + S) v + C' mu = J'K V_H,   C v = 0:   v = P V_H
+///
+/// is the velocity of the nearest pose. By the same equations the hand feels P' tau, as a wrench at
+/// Ho, so that w_d V_H = tau' v: what the hand gives is what the mechanism gets. On the path, e1 =
+/// 0, S vanishes.
 class HandDynamics {
  public:
   /// Keeps references to the tree. `stiffness`: K, diagonal; rows that a point grasp ignores do not
@@ -32,7 +47,7 @@ class HandDynamics {
   /// @throws std::invalid_argument if it leaves others loose, naming one; or if a cut joint has
   ///         springs or friction, or a joint has friction under load: they are beyond this path.
   HandDynamics(const KinematicTree& tree, const GraspFrame& grasp, const Vector6d& stiffness,
-               const VectorXd& q);
+               const VectorXd& q, WrenchRule rule = WrenchRule::kWorkless);
 
   /// Takes the closed pose q [nq]; returns that of the grasp frame.
   Posed SetPose(const VectorXd& q) noexcept;
@@ -44,10 +59,25 @@ class HandDynamics {
   [[nodiscard]] bool Evaluate(const Vector6d& V_WG, const Vector6d& A_WG,
                               double inertia = 1) noexcept;
 
+  // The same in two steps, for velocities and accelerations that are found otherwise.
+  /// v() = P V_WH. `S` [nv, nv; J], null for a hand on the path; it is left out where it makes the
+  /// pose no minimum. False if a value is not finite.
+  /// `turn`: the rotation of e1 [rad]; a hand that turns by w changes it by w - turn x w / 2 .. .
+  [[nodiscard]] bool FindVelocities(const Vector6d& V_WH, const MatrixXd* S,
+                                    const Vector3d& turn = Vector3d::Zero()) noexcept;
+  /// After FindVelocities: how heavy the mechanism is for a handle of masses D [kg, kg m^2], the
+  /// largest a'P'M P a over a'D a. Directions with D = 0 do not count. One step of power iteration
+  /// from where the last call ended: exact at once where there is one freedom.
+  double InertiaRatio(const Vector6d& D) noexcept;
+  /// After FindVelocities: the wrenches of a mechanism that is at v (for its dampers and friction)
+  /// and has the velocity u and the rate of velocity udot as far as its inertia is concerned.
+  [[nodiscard]] bool Evaluate(const VectorXd& v, const VectorXd& u, const VectorXd& udot) noexcept;
+
   // Of the last Evaluate.
+  Vector6d Twist(const VectorXd& v) const noexcept;        ///< J v: of Go, world axes
   const VectorXd& v() const noexcept { return v_; }        ///< [nv]
   const VectorXd& vdot() const noexcept { return vdot_; }  ///< [nv], times the share of inertia
-  const Vector6d& w_d() const noexcept { return w_d_; }    ///< hand on mechanism, at Go, world axes
+  const Vector6d& w_d() const noexcept { return w_d_; }    ///< hand on mechanism, world axes
   /// What the first link exerts on the second, about the second anchor's origin, in the axes of the
   /// first anchor; per joint of the mechanism.
   const std::vector<Wrenchd>& joints() const noexcept { return joints_; }
@@ -56,18 +86,27 @@ class HandDynamics {
   double Energy() const noexcept;
 
  private:
-  bool Factor() noexcept;
+  bool Factor(const MatrixXd* S) noexcept;
+  bool FactorWithoutCurvature() noexcept;
+  void FindWrench() noexcept;
+  void FindPaperWrench() noexcept;
   void SolveMotion(const Vector6d& b, const VectorXd& d, VectorXd* x) noexcept;
   void HoldIdleFreedoms();
 
   const KinematicTree& tree_;
+  WrenchRule rule_;
   Vector6d K_, root_K_;
   GraspedMechanism pose_;
   PassiveJoints passive_;
   SaddleSystem system_;
-  MatrixXd rootKJ_, A_;
-  VectorXd damping_;  // [nv], of the trace of A
+  SaddleSystem paper_system_;  // of eq. (14): no equations
+  MatrixXd rootKJ_, A_, curved_A_;
+  Vector3d turn_ = Vector3d::Zero();
+  bool curved_ = false;                   // the factors are those of curved_A_
+  Vector6d heaviest_ = Vector6d::Ones();  // direction of InertiaRatio
+  VectorXd damping_;                      // [nv], of the trace of A
   VectorXd q_, v_, felt_v_, vdot_, tau_, x_, right_, d_, zero_, mu_;
+  std::vector<Screw> cut_;  // what the cut joints exert by eq. (14)
   std::vector<Wrenchd> joints_;
   Vector6d w_d_ = Vector6d::Zero();
 };

@@ -44,7 +44,7 @@ bool Shorten(double most, Double4* a) {
 }  // namespace
 
 VirtualCoupling::VirtualCoupling(const HandCoupling& coupling, GraspKind kind, double step)
-    : max_force_(coupling.max_force), max_moment_(coupling.max_moment), T_(step) {
+    : most_{coupling.max_force, coupling.max_moment}, T_(step) {
   const HandCoupling checked = Checked(coupling, kind);
   stiffness_ = ScrewOf(checked.stiffness);
   damping_ = ScrewOf(checked.damping);
@@ -55,8 +55,23 @@ void VirtualCoupling::Stretch(const Frame& X_WG, const MovingFrame& hand) noexce
   V_WH_ = hand.V;
   e1_ = HandError(X_WG, hand.X);
   const Screw pull = Scaled(stiffness_, e1_);
-  energy_ = SpringEnergy(e1_.linear, pull.linear, max_force_) +
-            SpringEnergy(e1_.angular, pull.angular, max_moment_);
+  const WrenchLimit allowed = Allowed(pull);
+  energy_ = SpringEnergy(e1_.linear, pull.linear, allowed.force) +
+            SpringEnergy(e1_.angular, pull.angular, allowed.moment);
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  slipped_.force = Length(pull.linear) > allowed.force ? allowed.force : kNone;
+  slipped_.moment = Length(pull.angular) > allowed.moment ? allowed.moment : kNone;
+}
+
+/// The largest force and moment of a pull that may be too large.
+WrenchLimit VirtualCoupling::Allowed(const Screw& pull) const noexcept {
+  WrenchLimit allowed{std::min({most_.force, room_.force, slipped_.force}),
+                      std::min({most_.moment, room_.moment, slipped_.moment})};
+  if (!room_.together) return allowed;
+  const double f = std::min(Length(pull.linear), allowed.force);
+  const double m = std::min(Length(pull.angular), allowed.moment);
+  const double share = room_.Share(f, m);
+  return share < 1 ? WrenchLimit{share * f, share * m} : allowed;
 }
 
 Screw VirtualCoupling::Given() const noexcept {
@@ -65,14 +80,16 @@ Screw VirtualCoupling::Given() const noexcept {
 
 bool VirtualCoupling::Pull(const Screw& V_WG) noexcept {
   w_ = Scaled(stiffness_, e1_ - T_ * V_WG) + Scaled(damping_, V_WH_ - V_WG);
-  const bool force_slips = Shorten(max_force_, &w_.linear);
-  const bool moment_slips = Shorten(max_moment_, &w_.angular);
+  const WrenchLimit allowed = Allowed(w_);
+  const bool force_slips = Shorten(allowed.force, &w_.linear);
+  const bool moment_slips = Shorten(allowed.moment, &w_.angular);
   return slipping_ = force_slips || moment_slips;
 }
 
 void VirtualCoupling::LetGo() noexcept {
   w_ = {};
   energy_ = 0;
+  slipped_ = {};
   slipping_ = false;
 }
 

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "vmech/dynamics/in_hand/grasped_mechanism.h"
+#include "vmech/dynamics/in_hand/wrench_limit.h"
 
 namespace vmech {
 
@@ -30,6 +31,11 @@ class VirtualCoupling {
   /// The hand and the grasp frame, in the world.
   void Stretch(const Frame& X_WG, const MovingFrame& hand) noexcept;
 
+  /// What the device can exert at this moment, beside the largest force and moment of the coupling
+  /// itself. A spring that slips does not pull harder because there is more room, until it has
+  /// stopped: its energy would grow by what nobody pays.
+  void Within(const WrenchLimit& room) noexcept { room_ = room; }
+
   const Screw& root_gain() const noexcept { return root_gain_; }  ///< (B + T K)^1/2
   /// K e1 + B V_H: what does not depend on the motion to come.
   Screw Given() const noexcept;
@@ -46,8 +52,12 @@ class VirtualCoupling {
   double Dragged(const Screw& V_WG) const noexcept;
 
  private:
+  WrenchLimit Allowed(const Screw& pull) const noexcept;
+
   Screw stiffness_, damping_, root_gain_;
-  double max_force_, max_moment_, T_;
+  WrenchLimit most_, room_;
+  WrenchLimit slipped_;  // at what the spring slipped last; no limit where it did not
+  double T_;
   Screw V_WH_, e1_, w_;
   double energy_ = 0;
   bool slipping_ = false;

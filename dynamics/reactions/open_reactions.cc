@@ -53,24 +53,21 @@ MatrixXd FactorQR(const MatrixXd& A, MatrixXd* Q = nullptr) {
 OpenReactions::OpenReactions(const KinematicTree& tree, const CoordinatePartition& partition,
                              const TreeWorkspace<double>& ws)
     : last_loop_(LastLoops(tree, partition)) {
-  const VectorXd row_scale = LoopRowScale(tree), velocity_scale = VelocityScale(tree);
   has_full_rank_ = Find(last_loop_, -1) == std::ssize(last_loop_);
   double longest_row = 0;  // by its sum, as the columns
   VectorXd columns = VectorXd::Zero(std::ssize(last_loop_));
   Rows handed;
   for (size_t l = 0; l < tree.loops.size(); ++l) {
-    const Loop& loop = tree.loops[l];
-    Rows own{{}, MatrixXd(loop.rows, std::ssize(loop.columns))};
-    for (size_t k = 0; k < loop.columns.size(); ++k) {
-      const int v = loop.columns[k].v;
-      if (partition.dependent_slot[v] < 0) continue;
-      own.A.col(std::ssize(own.slots)) =
-          velocity_scale[v] *
-          row_scale.segment(loop.row, loop.rows)
-              .cwiseProduct(ws.loop_columns[ws.first_column[l] + k].head(loop.rows));
-      own.slots.push_back(partition.dependent_slot[v]);
+    const RowBlock block = DimensionlessLoopRows(tree, ws, l);
+    Rows own;
+    std::vector<int> kept;
+    for (size_t k = 0; k < block.columns.size(); ++k) {
+      const int slot = partition.dependent_slot[block.columns[k]];
+      if (slot < 0) continue;
+      own.slots.push_back(slot);
+      kept.push_back(static_cast<int>(k));
     }
-    own.A.conservativeResize(Eigen::NoChange, std::ssize(own.slots));
+    own.A = block.A(Eigen::all, kept);
     columns(own.slots) += own.A.cwiseAbs().colwise().sum().transpose();
     longest_row = std::max(longest_row, own.A.cwiseAbs().rowwise().sum().maxCoeff());
     handed = TakeTurn(handed, own, l);
@@ -147,10 +144,13 @@ VectorXd OpenReactions::LargestOpen(const std::vector<Block>& blocks) const {
 /// R' y = b.
 VectorXd OpenReactions::SolveTransposed(VectorXd b) const {
   for (const Turn& turn : turns_) {
-    const VectorXd right = b(turn.eliminated);
-    const VectorXd y = turn.R.triangularView<Eigen::Upper>().transpose().solve(right);
-    b(turn.eliminated) = y;
-    b(turn.later) -= turn.R_later.transpose() * y;
+    const std::vector<int>&own = turn.eliminated, &later = turn.later;
+    for (size_t j = 0; j < own.size(); ++j) {
+      double& y = b[own[j]];
+      for (size_t i = 0; i < j; ++i) y -= turn.R(i, j) * b[own[i]];
+      y /= turn.R(j, j);
+      for (size_t k = 0; k < later.size(); ++k) b[later[k]] -= turn.R_later(j, k) * y;
+    }
   }
   return b;
 }
@@ -158,9 +158,13 @@ VectorXd OpenReactions::SolveTransposed(VectorXd b) const {
 /// R x = b.
 VectorXd OpenReactions::Solve(VectorXd b) const {
   for (auto turn = turns_.rbegin(); turn != turns_.rend(); ++turn) {
-    const VectorXd right = b(turn->eliminated) - turn->R_later * b(turn->later);
-    const VectorXd x = turn->R.triangularView<Eigen::Upper>().solve(right);
-    b(turn->eliminated) = x;
+    const std::vector<int>&own = turn->eliminated, &later = turn->later;
+    for (size_t j = own.size(); j-- > 0;) {
+      double& x = b[own[j]];
+      for (size_t k = 0; k < later.size(); ++k) x -= turn->R_later(j, k) * b[later[k]];
+      for (size_t i = j + 1; i < own.size(); ++i) x -= turn->R(j, i) * b[own[i]];
+      x /= turn->R(j, j);
+    }
   }
   return b;
 }

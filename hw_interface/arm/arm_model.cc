@@ -2,12 +2,24 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "vmech/base/screw_algebra.h"
+#include "vmech/mechanisms/mass_properties.h"
 
 namespace vmech {
 namespace {
+
+/// The body with a point mass at P fixed to it.
+MassProperties WithPointMass(const MassProperties& body, double mass, const Vector3d& p_LoP) {
+  const double sum = body.mass + mass;
+  const Vector3d c = (body.mass * body.p_LoLcm + mass * p_LoP) / sum;
+  const Matrix3d I = InertiaAboutPoint(body.I_Lcm, body.mass, body.p_LoLcm - c) +
+                     InertiaAboutPoint(Matrix3d::Zero(), mass, p_LoP - c);
+  return {sum, c, I};
+}
 
 std::shared_ptr<const ArmDescription> Checked(std::shared_ptr<const ArmDescription> arm) {
   const KinematicTree& tree = arm->tree;
@@ -25,6 +37,21 @@ std::shared_ptr<const ArmDescription> Checked(std::shared_ptr<const ArmDescripti
 }
 
 }  // namespace
+
+ArmDescription WithMassAtHandle(const ArmDescription& arm, double mass) {
+  ArmDescription heavier = arm;
+  if (mass == 0) return heavier;
+  Mechanism mechanism = arm.tree.mechanism;
+  for (size_t l = 0; l < mechanism.links.size(); ++l) {
+    if (arm.tree.NodeOfLink(static_cast<int>(l)) != arm.handle_node) continue;
+    const Posed X_LB = arm.tree.X_node_link(static_cast<int>(l)).inverse();
+    MassProperties& body = mechanism.links[l].mass_properties;
+    body = WithPointMass(body, mass, (X_LB * arm.X_BH).p);
+    break;
+  }
+  heavier.tree = BuildKinematicTree(mechanism);
+  return heavier;
+}
 
 ArmModel::ArmModel(std::shared_ptr<const ArmDescription> arm)
     : arm_(Checked(std::move(arm))),
@@ -79,6 +106,30 @@ void ArmModel::BiasForces(const VectorXd& v, const Wrenchd& F_Ho) noexcept {
 const VectorXd& ArmModel::GravityTorques() noexcept {
   BiasForces(rest_, Wrenchd{});
   return bias_;
+}
+
+JointArray ArmModel::TorqueRoom() noexcept {
+  JointArray room = JointArray::Zero();
+  const VectorXd& weight = GravityTorques();
+  for (int i = 0; i < joints(); ++i) {
+    room[i] = std::max(0.0, arm_->torque_limit[i] - std::abs(weight[i]));
+  }
+  return room;
+}
+
+/// A force f takes at most |f| |J_i| of joint i's torque, J_i the column's linear part.
+WrenchLimit ArmModel::WrenchRoom(const JointArray& torque) noexcept {
+  constexpr double kLeast = 1e-6;  // [N], [N m]: a limit is not zero
+  constexpr double kNoLever = 1e-9;
+  WrenchLimit room{.together = true};
+  const Matrix6Xd& J = this->J();
+  for (int i = 0; i < joints(); ++i) {
+    const double by_force = std::max(J.col(i).head<3>().norm(), kNoLever);
+    const double by_moment = std::max(J.col(i).tail<3>().norm(), kNoLever);
+    room.force = std::min(room.force, std::max(torque[i] / by_force, kLeast));
+    room.moment = std::min(room.moment, std::max(torque[i] / by_moment, kLeast));
+  }
+  return room;
 }
 
 const MatrixXd& ArmModel::MassMatrix() noexcept {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "vmech/dynamics/in_hand/wrench_limit.h"
 #include "vmech/dynamics/rigid_body/newton_euler.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
 #include "vmech/kinematics/tree/kinematic_tree.h"
@@ -23,6 +24,10 @@ struct ArmDescription {
   VectorXd torque_limit;  ///< of each motor [N m] or [N]
   VectorXd posture;       ///< the nominal posture [rad] or [m]
 };
+
+/// The arm with a point mass [kg] fixed to its handle, at Ho: the part of an operator's hand that
+/// moves along.
+ArmDescription WithMassAtHandle(const ArmDescription& arm, double mass);
 
 /// Kinematics and rigid-body dynamics of an arm with memory for one posture:
 ///
@@ -50,6 +55,10 @@ class ArmModel {
 
   /// The torques that hold the arm still against gravity, h(q, 0).
   const VectorXd& GravityTorques() noexcept;
+  /// What holding the arm against gravity leaves of each motor's torque, not below zero.
+  JointArray TorqueRoom() noexcept;
+  /// The force and the moment at the handle, in any direction, that so much torque can exert.
+  WrenchLimit WrenchRoom(const JointArray& torque) noexcept;
   /// M(q).
   const MatrixXd& MassMatrix() noexcept;
   /// M(q) v, the joints' momenta, in one pass out and one back; `v` and `momenta` have joints()

@@ -78,17 +78,7 @@ MassProperties LinkMass(const Row& row) {
   return {row.mass, c, InertiaAboutCenterOfGravity(I_Lo, row.mass, c)};
 }
 
-/// The body with a point mass at P fixed to it.
-MassProperties WithPointMass(const MassProperties& body, double mass, const Vector3d& p_LoP) {
-  if (mass == 0) return body;
-  const double sum = body.mass + mass;
-  const Vector3d c = (body.mass * body.p_LoLcm + mass * p_LoP) / sum;
-  const Matrix3d I = InertiaAboutPoint(body.I_Lcm, body.mass, body.p_LoLcm - c) +
-                     InertiaAboutPoint(Matrix3d::Zero(), mass, p_LoP - c);
-  return {sum, c, I};
-}
-
-Mechanism SarcosMechanism(double hand_mass) {
+Mechanism SarcosMechanism() {
   Mechanism arm;
   arm.name = "sarcos master arm";
   arm.gravity_W = Vector3d(0, 0, -9.81);
@@ -106,16 +96,14 @@ Mechanism SarcosMechanism(double hand_mass) {
     joint.passive[0].viscous = row.viscous;
     arm.joints.push_back(std::move(joint));
   }
-  MassProperties& hand = arm.links.back().mass_properties;
-  hand = WithPointMass(hand, hand_mass, kHandle);
   return arm;
 }
 
 }  // namespace
 
-ArmDescription SarcosMasterArm(double hand_mass) {
+ArmDescription SarcosMasterArm() {
   ArmDescription arm;
-  arm.tree = BuildKinematicTree(SarcosMechanism(hand_mass));
+  arm.tree = BuildKinematicTree(SarcosMechanism());
   arm.handle_node = arm.tree.NodeOfLink(kJoints);
   arm.X_BH = arm.tree.X_node_link(kJoints) * Posed{Matrix3d::Identity(), kHandle};
   arm.torque_limit = VectorXd::Zero(kJoints);

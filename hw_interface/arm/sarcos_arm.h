@@ -12,9 +12,7 @@ namespace vmech {
 /// single links are not those of real bodies. The torque limits are the electronics' full scale.
 /// Joint friction is not published; 0.3 N m s/rad at the shoulder down to 0.03 at the wrist is a
 /// choice of ours. Base frame D: z up, gravity (0, 0, -9.81).
-///
-/// `hand_mass` [kg] moves with the handle: the part of the operator's hand that does not let go.
-ArmDescription SarcosMasterArm(double hand_mass = 0);
+ArmDescription SarcosMasterArm();
 
 /// Joint of the thumb that closes the gripper: range [rad] and full-scale torque [N m].
 struct GripperRange {

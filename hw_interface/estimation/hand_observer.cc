@@ -13,10 +13,9 @@
 namespace vmech {
 namespace {
 
-constexpr double kLighter = 1.5;                   // c
 constexpr double kMobilityTime = 0.2;              // [s]
 constexpr double kLosing = 0.01, kGaining = 0.05;  // [s]: of trust
-constexpr double kSmoothing = 2e-3;                // [s]
+constexpr double kSmoothing = 2;                   // [periods]: of differences
 constexpr double kFinest = 1e-5;                   // [m], [rad]
 
 constexpr double kNoStop = std::numeric_limits<double>::infinity();
@@ -44,6 +43,7 @@ std::array<double, 3> GainsFor(double bandwidth, double period) {
 
 void HandObserverOptions::Validate() const {
   if (bandwidth != 0) CheckRange("HandObserverOptions", "bandwidth", bandwidth, 30, 1e3);
+  CheckRange("HandObserverOptions", "lighter", lighter, 0, 4);
 }
 
 bool HandObserver::Suits(const DeviceInfo& info) {
@@ -52,6 +52,7 @@ bool HandObserver::Suits(const DeviceInfo& info) {
 
 HandObserver::HandObserver(const HandObserverOptions& options, const DeviceInfo& info)
     : period_(info.period),
+      lighter_(options.lighter),
       arm_(Checked(info).arm),
       lower_(JointArray::Constant(-kNoStop)),
       upper_(JointArray::Constant(kNoStop)),
@@ -65,7 +66,7 @@ HandObserver::HandObserver(const HandObserverOptions& options, const DeviceInfo&
     upper_[node.v] = tree.mechanism.joints[node.joint].upper[node.freedom];
   }
   gain_ = GainsFor(options.bandwidth, period_);
-  for (int k = 0; k <= kMostPeriods; ++k) new_share_[k] = 1 - std::exp(-k * period_ / kSmoothing);
+  for (int k = 0; k <= kMostPeriods; ++k) new_share_[k] = 1 - std::exp(-k / kSmoothing);
   resolution_ = {Double4Of(Vector3d::Constant(std::max(info.linear.resolution, kFinest))),
                  Double4Of(Vector3d::Constant(std::max(info.angular.resolution, kFinest)))};
 }
@@ -82,8 +83,6 @@ void HandObserver::Update(const MasterState& state, const Vector6d& F_Ho_D, int 
   if (until_mobility_-- <= 0) FindMobility(state);
   periods = std::clamp(periods, 1, kMostPeriods);
   const double elapsed = periods * period_;
-  const double change = AtStop(state) ? -elapsed / kLosing : elapsed / kGaining;
-  trust_ = std::clamp(trust_ + change, 0.0, 1.0);
   const Screw step = HandError(X_last_, X);
   displacement_ += step;
   X_last_ = X;
@@ -102,6 +101,10 @@ void HandObserver::Update(const MasterState& state, const Vector6d& F_Ho_D, int 
   const Screw within{Clamped(ahead.linear, resolution_.linear),
                      Clamped(ahead.angular, resolution_.angular)};
   x_ = displacement_ + within;
+  const Screw beyond = ahead - within;
+  const bool strays = Power(beyond, beyond) > 0;
+  const double change = strays || AtStop(state) ? -elapsed / kLosing : elapsed / kGaining;
+  trust_ = std::clamp(trust_ + change, 0.0, 1.0);
   hand_ = {Displaced(X, trust_ * within), trust_ * v_ + (1 - trust_) * differences_};
 }
 
@@ -127,7 +130,7 @@ void HandObserver::FindMobility(const MasterState& state) noexcept {
   factor_.solveInPlace(yielding_);
   const Matrix6d Y = arm_.J().lazyProduct(yielding_);
   const bool sound = factor_.info() == Eigen::Success && Y.allFinite();
-  for (int i = 0; i < 6; ++i) mobility_[i] = sound ? kLighter * ScrewOf(Y.col(i)) : Screw{};
+  for (int i = 0; i < 6; ++i) mobility_[i] = sound ? lighter_ * ScrewOf(Y.col(i)) : Screw{};
 }
 
 }  // namespace vmech

@@ -12,6 +12,9 @@ struct HandObserverOptions {
   /// How fast it follows what the hand does of itself [1/s], 0 or in [30, 1000]; 0: no observer.
   /// Lower is quieter, and relies more on the arm's model.
   double bandwidth = 120;
+  /// c: the handle is taken for so much lighter than the arm's model says, in [0, 4]. More adds
+  /// damping to what a spring renders; for a rendered inertia it is 1.
+  double lighter = 1;
 
   /// @throws std::invalid_argument naming field, value and range.
   void Validate() const;
@@ -25,7 +28,7 @@ struct HandObserverOptions {
 ///   v' = c Y F + d,   d' white noise,   Y = J M^-1 J' of the arm's model,
 ///
 /// F the wrench at work since the last sample, in place of an acceleration that is all unknown
-/// (KalmanEstimator). c = 1.5: the handle is taken for lighter than it is, which adds damping and
+/// (KalmanEstimator). c > 1: the handle is taken for lighter than it is, which adds damping and
 /// leaves room for a hand that moves along and a model that is not exact. Y is found anew every 0.2
 /// s. No allocation after construction.
 class HandObserver {
@@ -54,7 +57,7 @@ class HandObserver {
   void FindMobility(const MasterState& state) noexcept;
   bool AtStop(const MasterState& state) const noexcept;
 
-  double period_;
+  double period_, lighter_;
   std::array<double, 3> gain_;
   std::array<double, kMostPeriods + 1> new_share_;  // of a difference over so many periods
   ArmModel arm_;

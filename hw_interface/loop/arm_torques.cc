@@ -1,6 +1,7 @@
 #include "vmech/hw_interface/loop/arm_torques.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "vmech/base/check_range.h"
@@ -39,6 +40,8 @@ void ArmTorques::Resolve(const MasterState& state, bool fresh,
   arm_.SetPosture(q.data());
   if (!((q - found_at_).abs().maxCoeff() < kSamePosture)) {
     FindFreeMotions();
+    torque_room_ = arm_.TorqueRoom();
+    room_ = arm_.WrenchRoom(torque_room_);
     found_at_ = q;
   }
   if (fresh) {
@@ -47,10 +50,23 @@ void ArmTorques::Resolve(const MasterState& state, bool fresh,
   }
   const Screw F_Do = arm_.WrenchAtBase(command->F_Ho_D);
   for (int i = 0; i < arm_.joints(); ++i) torque_[i] = Power(F_Do, arm_.S()[i]);
+  JointArray unfelt = JointArray::Zero();
   for (int k = 0; k < free_motions_; ++k) {
-    torque_ += (motions_[k] * posture_torque_).sum() * drives_[k];
+    unfelt += (motions_[k] * posture_torque_).sum() * drives_[k];
   }
+  torque_ += ShareOf(unfelt) * unfelt;
   Eigen::Map<JointArray>(command->torque.data()) = torque_;
+}
+
+/// The posture takes of the motors no more than the wrench leaves.
+double ArmTorques::ShareOf(const JointArray& unfelt) const noexcept {
+  double share = 1;
+  for (int i = 0; i < arm_.joints(); ++i) {
+    const double left = torque_room_[i] - std::copysign(1.0, unfelt[i]) * torque_[i];
+    if (std::abs(unfelt[i]) > left)
+      share = std::min(share, std::max(0.0, left) / std::abs(unfelt[i]));
+  }
+  return share;
 }
 
 void ArmTorques::FindFreeMotions() noexcept {

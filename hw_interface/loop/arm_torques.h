@@ -38,9 +38,13 @@ class ArmTorques {
   /// Writes `torque` of the command from its F_Ho_D at measured angles; `fresh` as in TickInput.
   void Resolve(const MasterState& state, bool fresh,
                MasterCommand* command) noexcept VMECH_NONBLOCKING;
+  /// What gravity leaves of the motors for the handle, at the posture of the last Resolve to 3e-3
+  /// rad; no limit before.
+  const WrenchLimit& room() const noexcept { return room_; }
 
  private:
   void FindFreeMotions() noexcept;
+  double ShareOf(const JointArray& unfelt) const noexcept;
 
   PostureOptions options_;
   ArmModel arm_;
@@ -48,7 +52,9 @@ class ArmTorques {
   KalmanEstimator<JointArray> velocity_;
   JointArray posture_torque_ = JointArray::Zero(), torque_ = JointArray::Zero();
   HandleNullSpace null_space_;
-  JointArray found_at_;  // q of the free motions
+  JointArray found_at_;                          // q of the free motions
+  JointArray torque_room_ = JointArray::Zero();  // of each motor, beside gravity
+  WrenchLimit room_;
   int free_motions_ = 0;
   std::array<JointArray, kMaxArmJoints> motions_, drives_;  // n_k and M n_k / (n_k' M n_k)
 };

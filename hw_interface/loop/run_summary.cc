@@ -45,8 +45,10 @@ std::string RunSummary::FullReport() const {
   text += fmt::format("  peak force {:.4g} N, moment {:.4g} N m; least energy {:.3g} J\n",
                       peak_force, peak_moment, least_energy);
   text += fmt::format(
-      "  safety: without force {} ticks, ramped {}, damped {}, clamped {}, slewed {}\n", safety.off,
-      safety.stages[0], safety.stages[1], safety.stages[2], safety.stages[3]);
+      "  safety: without force {} ticks, ramped {}, damped {}, clamped {}, slewed {}, braked {}\n",
+      safety.off, safety.stages[0], safety.stages[1], safety.stages[2], safety.stages[3],
+      safety.stages[4]);
+  if (*AdviceFor(cause) != 0) text += fmt::format("  to mend it: {}\n", AdviceFor(cause));
   if (!post_mortem.empty()) {
     text += fmt::format("  the last ticks are in {}\n", post_mortem.string());
   }

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "vmech/base/check_range.h"
+#include "vmech/base/rotation_error.h"
+#include "vmech/base/screw_algebra.h"
 
 namespace vmech {
 namespace {
@@ -95,8 +97,9 @@ void Runner::RunSlot(std::int64_t slot_ns, TickRecord* record) noexcept {
   record->io = ReadMaster(slot_ns, &state_);
   record->state = state_;
   const TickOutput wanted = StepTick(record->io, record);
-  const SafetyOutput safe = safety_.Apply(
-      {master_->lifecycle(), record->io, &state_, record->wanted_F_Ho_D, wanted.stored_energy});
+  const SafetyOutput safe =
+      safety_.Apply({master_->lifecycle(), record->io, &state_, record->wanted_F_Ho_D,
+                     wanted.stored_energy, torques_ ? torques_->room() : WrenchLimit{}});
   Send(slot_ns, safe);
   record->sent_F_Ho_D = safe.F_Ho_D;
   record->off = safe.off;
@@ -111,6 +114,8 @@ IoStatus Runner::ReadMaster(std::int64_t slot_ns, MasterState* state) noexcept {
   const IoStatus io = master_->Read(slot_ns, state);
   if (emergency_stop_) state->emergency_stop = true;
   fresh_ = io == IoStatus::kOk;
+  if (fresh_) gap_ = missing_;
+  missing_ = fresh_ ? 0 : missing_ + 1;
   summary_.missed += fresh_ ? 0 : 1;
   return io;
 }
@@ -123,26 +128,33 @@ TickOutput Runner::StepTick(IoStatus io, TickRecord* record) noexcept VMECH_NONB
   if (!registered_) {
     if (io != IoStatus::kOk) return out;
     Register();
-    last_sequence_ = state_.sequence;
+    last_sample_ = state_;
     registered_ = true;
   }
   MovingFrame observed;
+  const Matrix3d& R_WD = registration_.X_WD.R;
+  const Vector6d F_Ho_D = safety_.WrenchCharged(state_);
+  const Vector6d charged = Stacked<double>(R_WD * F_Ho_D.head<3>(), R_WD * F_Ho_D.tail<3>());
   if (fresh_) {
+    if (gap_ > options_.safety.hold_periods) TakeUpAgain();
     Observe();
     GraspOrLetGo();
   }
   TickInput input;
   input.held = holds_;
   input.fresh = fresh_;
-  input.elapsed = static_cast<double>(state_.sequence - last_sequence_) * period_;
+  input.elapsed = fresh_ ? PeriodsBetween(last_sample_, state_, period_) * period_ : 0;
   input.state = &state_;
+  if (torques_) input.room = torques_->room();
+  input.debt = safety_.Debt();
+  input.charged_F_Ho_W = &charged;
   if (observer_) {
-    registration_.TakeHandInWorld(observer_->hand_D(), &observed);
+    registration_.TakeHandInWorld(HandNow(), &observed);
     input.observed = &observed;
   } else {
     input.X_WH = registration_.HandInWorld(state_.X_DH);
   }
-  last_sequence_ = state_.sequence;
+  if (fresh_) last_sample_ = state_;
   out = tick_->Step(input, std::span<double>(record->channels.data(), channels_.size()));
   const Matrix3d R_DW = registration_.X_WD.R.transpose();
   record->wanted_F_Ho_D << R_DW * out.F_Ho_W.head<3>(), R_DW * out.F_Ho_W.tail<3>();
@@ -152,8 +164,16 @@ TickOutput Runner::StepTick(IoStatus io, TickRecord* record) noexcept VMECH_NONB
 
 void Runner::Observe() noexcept {
   if (!observer_) return;
-  const auto periods = static_cast<int>(state_.sequence - last_sequence_);
-  observer_->Update(state_, safety_.WrenchAtWork(state_), periods);
+  const auto periods = std::lround(PeriodsBetween(last_sample_, state_, period_));
+  observer_->Update(state_, safety_.WrenchAtWork(state_), static_cast<int>(periods));
+}
+
+/// As observed; where samples are missing, the hand goes on as it did, for a few periods.
+MovingFrame Runner::HandNow() const noexcept {
+  MovingFrame hand = observer_->hand_D();
+  const int ahead = std::min(missing_, options_.safety.hold_periods);
+  if (ahead > 0) hand.X = Displaced(hand.X, (ahead * period_) * hand.V);
+  return hand;
 }
 
 /// Puts the hand where the grasp frame is.
@@ -164,6 +184,13 @@ void Runner::Register() noexcept {
   if (observer_) observer_->Reset();
   holds_ = !options_.gripper;
   summary_.grasps += holds_;
+}
+
+/// After a gap for which there was no force: the hand, wherever it has gone, has hold of the grasp
+/// frame where that is.
+void Runner::TakeUpAgain() noexcept {
+  if (observer_) observer_->Reset();
+  registration_ = GraspedAt(options_.R_WD, state_.X_DH, tick_->GraspFrame());
 }
 
 void Runner::GraspOrLetGo() noexcept {

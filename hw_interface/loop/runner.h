@@ -102,8 +102,10 @@ class Runner {
   void RunSlot(std::int64_t slot_ns, TickRecord* record) noexcept;
   IoStatus ReadMaster(std::int64_t slot_ns, MasterState* state) noexcept;
   void Observe() noexcept;
+  MovingFrame HandNow() const noexcept;
   TickOutput StepTick(IoStatus io, TickRecord* record) noexcept VMECH_NONBLOCKING;
   void Register() noexcept;
+  void TakeUpAgain() noexcept;
   void GraspOrLetGo() noexcept;
   bool GripperCloses() const noexcept;
   void Send(std::int64_t slot_ns, const SafetyOutput& safe) noexcept;
@@ -128,7 +130,8 @@ class Runner {
   LiveStatus live_;
   std::uint64_t slots_ = 0;  // to run; 0: no end
   bool registered_ = false, holds_ = false, fresh_ = false, failed_ = false;
-  std::uint64_t last_sequence_ = 0;
+  MasterState last_sample_;
+  int missing_ = 0, gap_ = 0;  // samples in a row: now, and before the last fresh one
   std::int64_t last_wake_ns_ = -1;
   std::atomic<bool> stop_ = false, emergency_stop_ = false;
 };

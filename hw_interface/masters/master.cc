@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "vmech/base/check_range.h"
@@ -13,6 +14,11 @@ namespace {
 void CheckPhysics(const DeviceInfo& info) {
   const std::string device = fmt::format("device '{}'", info.name);
   constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+  if (!(info.senses & kSensesPose)) {
+    throw std::logic_error(device +
+                           " states that it senses no pose (kSensesPose of DeviceInfo::senses): "
+                           "there is no hand to follow");
+  }
   CheckRange(device, "period", info.period, 1e-6, 1);
   CheckRange(device, "delay", info.delay, 0, 1);
   for (const HandlePhysics* handle : {&info.linear, &info.angular}) {
@@ -76,10 +82,26 @@ IoStatus Master::Read(std::int64_t now_ns, MasterState* state) noexcept {
   if (lifecycle_ == Lifecycle::kUnconfigured || lifecycle_ == Lifecycle::kFinalized) {
     return IoStatus::kNoNewData;
   }
-  const IoStatus status = OnRead(now_ns, state);
+  const IoStatus status = WithPose(OnRead(now_ns, state), state);
   state->host_time_ns = now_ns;
   if (status == IoStatus::kDeviceFault) lifecycle_ = Lifecycle::kFault;
   return status;
+}
+
+IoStatus Master::WithPose(IoStatus status, MasterState* state) noexcept {
+  if (status != IoStatus::kOk) return status;
+  const std::uint32_t needed = kSensesPose | (info_.senses & kSensesJoints);
+  if ((state->valid & needed) == needed) {
+    last_ = *state;
+    return status;
+  }
+  const std::uint32_t buttons = state->valid & kSensesButtons ? state->buttons : last_.buttons;
+  const bool dead_man = state->dead_man, emergency_stop = state->emergency_stop;
+  *state = last_;
+  state->buttons = buttons;
+  state->dead_man = dead_man;
+  state->emergency_stop = emergency_stop;
+  return IoStatus::kNoNewData;
 }
 
 IoStatus Master::Write(const MasterCommand& command) noexcept {
@@ -95,6 +117,14 @@ IoStatus Master::Write(const MasterCommand& command) noexcept {
                      (command.mode == CommandMode::kWrench && info_.takes_wrench) ||
                      (command.mode == CommandMode::kJointTorque && info_.takes_torque);
   return taken ? OnWrite(command) : IoStatus::kRefused;
+}
+
+double PeriodsBetween(const MasterState& earlier, const MasterState& later,
+                      double period) noexcept {
+  constexpr double kLate = 8;
+  const auto counted = static_cast<double>(later.sequence - earlier.sequence);
+  const double on_host = 1e-9 * static_cast<double>(later.host_time_ns - earlier.host_time_ns);
+  return std::max(1.0, std::min(counted, on_host / period + kLate));
 }
 
 const char* NameOf(Lifecycle lifecycle) noexcept {

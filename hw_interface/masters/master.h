@@ -84,7 +84,8 @@ class Master {
   void Shutdown() noexcept;
 
   /// The newest sample at time `now_ns` of the caller's monotonic clock. A simulated master
-  /// advances its simulation to it.
+  /// advances its simulation to it. A sample without a pose, or without the joints of a device that
+  /// senses them, is no new data: its switches count, everything else stays that of the last read.
   [[nodiscard]] IoStatus Read(std::int64_t now_ns, MasterState* state) noexcept;
   [[nodiscard]] IoStatus Write(const MasterCommand& command) noexcept;
 
@@ -101,10 +102,16 @@ class Master {
   virtual IoStatus OnRead(std::int64_t now_ns, MasterState* state) noexcept = 0;
   virtual IoStatus OnWrite(const MasterCommand& command) noexcept = 0;
   void Require(Lifecycle wanted, const char* verb) const;
+  IoStatus WithPose(IoStatus status, MasterState* state) noexcept;
 
   Lifecycle lifecycle_ = Lifecycle::kUnconfigured;
   DeviceInfo info_;
+  MasterState last_;  // with a pose
 };
+
+/// Device periods from one sample to a later one, at least 1: what their sequence numbers say, and
+/// no more than the host's clock leaves room for. A sample may be eight periods late.
+double PeriodsBetween(const MasterState& earlier, const MasterState& later, double period) noexcept;
 
 /// "active", "fault", ...
 const char* NameOf(Lifecycle lifecycle) noexcept;

@@ -36,11 +36,11 @@ void SimulatedMasterOptions::Validate() const {
 }
 
 SimulatedMaster::SimulatedMaster(const SimulatedMasterOptions& options)
-    : SimulatedMaster(options, SarcosMasterArm(options.hand.mass)) {}
+    : SimulatedMaster(options, SarcosMasterArm()) {}
 
 SimulatedMaster::SimulatedMaster(SimulatedMasterOptions options, ArmDescription arm)
-    : arm_(std::make_shared<const ArmDescription>(std::move(arm))),
-      sensed_(arm_),
+    : arm_(std::make_shared<const ArmDescription>(WithMassAtHandle(arm, options.hand.mass))),
+      sensed_(std::make_shared<const ArmDescription>(std::move(arm))),
       count_(options.encoder_bits > 0 ? std::ldexp(2 * std::numbers::pi, -options.encoder_bits)
                                       : 0),
       q_(arm_.description().posture),
@@ -63,10 +63,13 @@ DeviceInfo SimulatedMaster::OnConfigure() {
   info.delay = options_.delay_periods * options_.period;
   info.senses = kSensesPose | kSensesJoints | kSensesGripper | kSensesAppliedWrench | kSensesEcho;
   info.takes_wrench = info.takes_torque = true;
-  info.arm = arm_.shared_description();
+  info.arm = sensed_.shared_description();
   sensed_.SetPosture(arm_.description().posture.data());
   info.linear = PhysicsOf(sensed_.J().topRows<3>());
   info.angular = PhysicsOf(sensed_.J().bottomRows<3>());
+  const WrenchLimit room = sensed_.WrenchRoom(sensed_.TorqueRoom());
+  info.linear.peak = room.force;
+  info.angular.peak = room.moment;
   info.linear.max_speed = 2;
   info.angular.max_speed = 15;
   return info;
@@ -87,9 +90,6 @@ HandlePhysics SimulatedMaster::PhysicsOf(const MatrixXd& J_part) noexcept {
   physics.mass = 1 / mobility.trace();
   physics.damping = damping.minCoeff() > 0 ? 1 / yielding.trace() : 0;
   physics.resolution = count_ * J_part.colwise().norm().sum();
-  physics.peak = (arm_.description().torque_limit.transpose().array() /
-                  J_part.colwise().norm().array().max(1e-9))
-                     .minCoeff();
   return physics;
 }
 
@@ -186,7 +186,8 @@ void SimulatedMaster::Differentiate(double time, const VectorXd& q, const Vector
     passive_[node.v] = motor_[node.v] + torque;
   }
   const Vector6d V_DH = arm_.J() * v;
-  const Wrenchd hand = OperatorWrench(options_.hand, options_.motion(time), arm_.X_DH(), V_DH);
+  Wrenchd hand = OperatorWrench(options_.hand, options_.motion(time), arm_.X_DH(), V_DH);
+  hand.force -= options_.hand.mass * tree.mechanism.gravity_W;
   d->v = v;
   d->a = arm_.Accelerations(v, passive_, hand);
 }
@@ -224,7 +225,9 @@ void SimulatedMaster::Measure() noexcept {
 
 double SimulatedMaster::Energy() noexcept {
   arm_.SetPosture(q_.data());
-  return 0.5 * v_.dot(arm_.MassMatrix() * v_) + arm_.PotentialEnergy();
+  const Vector3d& g = arm_.description().tree.mechanism.gravity_W;
+  const double of_hand = -options_.hand.mass * g.dot(arm_.X_DH().p);
+  return 0.5 * v_.dot(arm_.MassMatrix() * v_) + arm_.PotentialEnergy() - of_hand;
 }
 
 }  // namespace vmech

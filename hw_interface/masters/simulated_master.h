@@ -29,7 +29,9 @@ struct SimulatedMasterOptions {
   void Validate() const;
 };
 
-/// A torque-controlled arm in simulation: rigid-body dynamics between samples, motors held constant
+/// A torque-controlled arm in simulation, with the hand that holds it, of which the device itself
+/// knows nothing: what it states are its own mass and room. The hand's mass moves with the handle,
+/// its weight is the operator's to carry. Rigid-body dynamics between samples, motors held constant
 /// over a period, encoders in whole counts, commands delayed and lost as asked, torques limited as
 /// one vector so that their direction stays. Time is the caller's: each Read advances the arm by
 /// whole periods up to `now_ns`, at most kMaxCatchUp of them. Same options, same calls: same bits.
@@ -45,7 +47,7 @@ class SimulatedMaster : public Master {
   const VectorXd& q() const noexcept { return q_; }
   const VectorXd& v() const noexcept { return v_; }
   double time() const noexcept { return time_; }  ///< simulated [s]
-  /// Kinetic and potential energy of the arm with the hand's mass [J].
+  /// Kinetic energy of the arm with the hand's mass, potential energy of the arm [J].
   double Energy() noexcept;
   /// Presses or releases what a real device has as switches.
   void SetDeadMan(bool held) noexcept { dead_man_ = held; }
@@ -71,7 +73,7 @@ class SimulatedMaster : public Master {
   HandlePhysics PhysicsOf(const MatrixXd& J_part) noexcept;
 
   SimulatedMasterOptions options_;
-  ArmModel arm_;     // the truth, at any stage of a step
+  ArmModel arm_;     // the truth with the hand, at any stage of a step
   ArmModel sensed_;  // what the device's own controller knows: at measured angles
   double count_;     // encoder step [rad]
   std::int64_t period_ns_ = 0;

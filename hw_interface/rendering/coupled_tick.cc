@@ -107,7 +107,9 @@ void CoupledTick::Reset() noexcept {
 }
 
 TickOutput CoupledTick::Step(const TickInput& input, std::span<double> channels) noexcept {
-  if (input.fresh || !has_hand_) ReadHand(input);
+  if (input.fresh || input.observed || !has_hand_) ReadHand(input);
+  dynamics_.Within(input.room.Times(1 / options_.scale));
+  if (input.debt > 0) dynamics_.Owe(input.debt / options_.scale);
   const CoupledStatus status = Move(input);
   TickOutput out;
   if (status == CoupledStatus::kFailed) {

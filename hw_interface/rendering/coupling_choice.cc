@@ -9,7 +9,7 @@
 
 #include "vmech/base/linear_algebra/linear_algebra.h"
 #include "vmech/dynamics/rigid_body/newton_euler.h"
-#include "vmech/hw_interface/safety/stability.h"
+#include "vmech/kinematics/loops/assembly.h"
 #include "vmech/kinematics/loops/loops.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
 
@@ -20,6 +20,8 @@ constexpr double kFaithful = 100;  // w_v [1/s]: 3 Hz over it, squared, is 3.6 %
 constexpr double kMargin = 1.2;    // where the device bears it
 constexpr double kPhase = 0.7;     // w_d times the loop's delay [rad]
 constexpr double kDampingRatio = 0.4;
+constexpr double kJerk = 20;    // [m/s^2]: what a step of the encoders may do to the handle
+constexpr double kLever = 0.1;  // [m], of a hand that turns
 
 /// Basis of C v = 0 [nv, mobility].
 MatrixXd AllowedMotions(const KinematicTree& tree, TreeWorkspace<double>* ws) {
@@ -30,12 +32,19 @@ MatrixXd AllowedMotions(const KinematicTree& tree, TreeWorkspace<double>* ws) {
   return FindNullSpace(LoopRowScale(tree).asDiagonal() * DenseLoopJacobian(tree, *ws), kRank).basis;
 }
 
-/// The handle's masses on the diagonal; without rotations for a point grasp.
-Vector6d HandleMasses(const GraspFrame& grasp, const DeviceInfo& device) {
-  const double turning = grasp.kind == GraspKind::kRigid ? device.angular.mass : 0;
-  Vector6d D;
-  D << Vector3d::Constant(device.linear.mass), Vector3d::Constant(turning);
-  return D;
+/// w_d: as fast as hold, delay and filter let a handle swing on the coupling, and no faster than
+/// the steps of its encoders allow, w^2 D <= kJerk.
+double FastestRate(const DeviceInfo& device, double smoothing) {
+  const double by_delay = kPhase / (0.5 * device.period + device.delay + smoothing);
+  const double step = std::max(device.linear.resolution, kLever * device.angular.resolution);
+  return step > 0 ? std::min(by_delay, std::sqrt(kJerk / step)) : by_delay;
+}
+
+double UnseenWork(const DeviceInfo& device) {
+  constexpr double kLeast = 0.02, kMost = 0.5;  // [J]
+  const double work = device.linear.peak * device.linear.resolution +
+                      device.angular.peak * device.angular.resolution;
+  return std::clamp(work, kLeast, kMost);
 }
 
 HandCoupling SoftCoupling(const DeviceInfo& device) {
@@ -48,6 +57,45 @@ HandCoupling SoftCoupling(const DeviceInfo& device) {
   coupling.stiffness << Vector3d::Constant(stiffness), Vector3d::Constant(kLever2 * stiffness);
   coupling.damping << Vector3d::Constant(damping), Vector3d::Constant(kLever2 * damping);
   return coupling;
+}
+
+/// The free motions at q, so large that the joint that moves most turns by `angle`, or slides by
+/// that part of the mechanism's length.
+MatrixXd Excursions(const KinematicTree& tree, const VectorXd& q, double angle) {
+  TreeWorkspace<double> ws(tree);
+  ForwardKinematics(tree, q.data(), &ws);
+  MatrixXd N = AllowedMotions(tree, &ws);
+  for (const TreeNode& node : tree.nodes) {
+    if (node.v >= 0 && node.motion == NodeMotion::kPrismatic) N.row(node.v) /= tree.length;
+  }
+  const Eigen::RowVectorXd largest = N.cwiseAbs().colwise().maxCoeff();
+  for (const TreeNode& node : tree.nodes) {
+    if (node.v >= 0 && node.motion == NodeMotion::kPrismatic) N.row(node.v) *= tree.length;
+  }
+  return N * (angle / largest.array().max(1e-12)).matrix().asDiagonal();
+}
+
+/// lambda for the coupling: that of the pose, but no more than four times the least of the poses
+/// about it. At a dead centre of the hand it has no bound, and says nothing of the motion.
+double RatioAlongThePath(const KinematicTree& tree, const GraspFrame& grasp, const VectorXd& q,
+                         const DeviceInfo& device) {
+  constexpr double kSteps[] = {-0.3, -0.1, 0.1, 0.3};  // [rad]
+  constexpr double kAtMost = 4;
+  const double here = InertiaRatio(tree, grasp, q, device);
+  if (device.linear.mass == 0) return 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (const double step : kSteps) {
+    const MatrixXd excursions = Excursions(tree, q, step);
+    for (Eigen::Index k = 0; k < excursions.cols(); ++k) {
+      VectorXd there = q;
+      MoveCoordinates(tree, excursions.col(k), &there);
+      if (!Assemble(tree, AssemblyOptions::Nearby(), &there).closed) continue;
+      const double ratio = InertiaRatio(tree, grasp, there, device);
+      if (ratio > 0) least = std::min(least, ratio);
+    }
+  }
+  if (here > 0) return std::min(here, kAtMost * least);
+  return std::isfinite(least) ? kAtMost * least : 0;
 }
 
 /// Force on a hand that stays where the mechanism is, once that hangs still on a soft spring.
@@ -67,14 +115,23 @@ double OrInfinite(double peak) {
   return peak > 0 ? peak : std::numeric_limits<double>::infinity();
 }
 
+/// A device that exerts forces and no moments cannot pay for moments on the mechanism.
+void WithoutMoments(const DeviceInfo& device, HandCoupling* coupling) {
+  const bool has_force = device.takes_wrench || device.takes_torque;
+  if (!has_force || device.angular.peak > 0) return;
+  coupling->stiffness.tail<3>().setZero();
+  coupling->damping.tail<3>().setZero();
+}
+
 }  // namespace
 
 SafetyOptions CouplingChoice::Safety() const {
   SafetyOptions safety;
   if (inertia_ratio == 0) return safety;
   safety.carried_start = true;
-  safety.passivity.grace = 0.02;
-  safety.passivity.forgiven = 0.1;
+  safety.passivity.grace = unseen_work;
+  safety.passivity.forgiven = 5 * unseen_work;
+  safety.energy_trip = 10 * unseen_work;
   safety.force_slew = 5e4;
   safety.moment_slew = 2500;
   return safety;
@@ -83,12 +140,13 @@ SafetyOptions CouplingChoice::Safety() const {
 CouplingChoice ChooseCoupling(const KinematicTree& tree, const GraspFrame& grasp, const VectorXd& q,
                               const DeviceInfo& device, double smoothing) {
   CouplingChoice choice;
-  choice.inertia_ratio = InertiaRatio(tree, grasp, q, device);
+  choice.inertia_ratio = RatioAlongThePath(tree, grasp, q, device);
   if (choice.inertia_ratio == 0) {
     choice.coupling = SoftCoupling(device);
+    WithoutMoments(device, &choice.coupling);
     return choice;
   }
-  const double fastest = kPhase / (0.5 * device.period + device.delay + smoothing);
+  const double fastest = FastestRate(device, smoothing);
   const double wanted = kFaithful * std::sqrt(choice.inertia_ratio);
   const double rate = std::min(kMargin * wanted, fastest);
   const Vector6d D = HandleMasses(grasp, device);
@@ -96,13 +154,22 @@ CouplingChoice ChooseCoupling(const KinematicTree& tree, const GraspFrame& grasp
   choice.coupling.damping = 2 * kDampingRatio * rate * D;
   choice.coupling.max_force = OrInfinite(device.linear.peak);
   choice.coupling.max_moment = OrInfinite(device.angular.peak);
+  WithoutMoments(device, &choice.coupling);
   choice.scale = std::min(1.0, std::pow(rate / wanted, 2));
   HandCoupling unlimited = choice.coupling;
   unlimited.max_force = unlimited.max_moment = OrInfinite(0);
   choice.weight = WeightAtHand(tree, grasp, q, unlimited);
+  choice.unseen_work = UnseenWork(device);
   const double bearable = 0.5 * choice.coupling.max_force;
   if (choice.scale * choice.weight > bearable) choice.scale = bearable / choice.weight;
   return choice;
+}
+
+Vector6d HandleMasses(const GraspFrame& grasp, const DeviceInfo& device) {
+  const double turning = grasp.kind == GraspKind::kRigid ? device.angular.mass : 0;
+  Vector6d D;
+  D << Vector3d::Constant(device.linear.mass), Vector3d::Constant(turning);
+  return D;
 }
 
 double InertiaRatio(const KinematicTree& tree, const GraspFrame& grasp, const VectorXd& q,
@@ -130,36 +197,6 @@ double InertiaRatio(const KinematicTree& tree, const GraspFrame& grasp, const Ve
     if (value > kMoves * eigen.maxCoeff()) least = std::min(least, value);
   }
   return least > 0 ? 1 / least : 0;
-}
-
-double StableInertiaShare(const KinematicTree& tree, const GraspFrame& grasp, const VectorXd& q,
-                          const DeviceInfo& device) {
-  const double ratio = InertiaRatio(tree, grasp, q, device);
-  return ratio > 0 ? std::min(1.0, 0.4 / ratio) : 1;
-}
-
-ContactLaw ContactLawFor(const DeviceInfo& device, double stiffness) {
-  constexpr double kNoForce = 1000;  // [N/m]
-  constexpr double kLever = 0.05;    // [m], of a hand
-  ContactLaw law;
-  if (!device.takes_wrench && !device.takes_torque) {
-    law.stiffness.head<3>().setConstant(kNoForce);
-    law.stiffness.tail<3>().setConstant(kNoForce * kLever * kLever);
-    return law;
-  }
-  RenderingGains wanted;
-  wanted.stiffness.setConstant(std::numeric_limits<double>::max());
-  law.stiffness = LimitedGains(device, wanted).stiffness;
-  // A device that does not state its damping: soft, and watched by the passivity controller.
-  if (device.linear.damping == 0) law.stiffness.head<3>().setConstant(kNoForce / 4);
-  if (device.angular.damping == 0) {
-    law.stiffness.tail<3>() = kLever * kLever * law.stiffness.head<3>();
-  }
-  if (stiffness > 0 && stiffness < law.stiffness[0]) {
-    law.stiffness.tail<3>() *= stiffness / law.stiffness[0];
-    law.stiffness.head<3>().setConstant(stiffness);
-  }
-  return law;
 }
 
 }  // namespace vmech

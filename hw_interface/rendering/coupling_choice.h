@@ -1,7 +1,6 @@
 #pragma once
 
 #include "vmech/dynamics/in_hand/coupled_dynamics.h"
-#include "vmech/hw_interface/rendering/contact_law.h"
 #include "vmech/hw_interface/safety/safety_filter.h"
 
 namespace vmech {
@@ -12,9 +11,12 @@ struct CouplingChoice {
   double scale = 1;          ///< force at the hand over force at the mechanism, at most 1
   double inertia_ratio = 0;  ///< lambda: largest inertia of the mechanism over the handle's own
   double weight = 0;         ///< force of the mechanism on a hand that keeps it here [N]
+  /// What a step of the encoders makes of the largest wrench: the work that a sample cannot tell
+  /// [J].
+  double unseen_work = 0.02;
 
-  /// Safety for a stiff coupling behind encoders of 16 bits: their steps are forgiven as energy,
-  /// and the force may change as fast as the coupling's.
+  /// Safety for a stiff coupling behind encoders: work that they cannot tell is forgiven, ten times
+  /// as much trips, and the force may change as fast as the coupling's.
   SafetyOptions Safety() const;
 };
 
@@ -26,7 +28,8 @@ struct CouplingChoice {
 ///
 ///   K = D w^2,  B = 2 z D w,  w = min(1.2 w_v lambda^1/2, w_d),  z = 0.4,  D the handle's masses,
 ///
-/// lambda the largest of N' M N s = lambda (J N)' D J N s, N the free motions. Where lambda asks
+/// lambda the largest of N' M N s = lambda (J N)' D J N s, N the free motions; near a dead centre
+/// of the hand, where it has no bound, four times the least of the poses about. Where lambda asks
 /// for more than w_d, or the weight for more than half of the device's peak force, forces are
 /// scaled down. A device that states no masses gets a soft spring, watched by the passivity
 /// controller. @throws std::invalid_argument if the mechanism has no freedom at q.
@@ -37,16 +40,7 @@ CouplingChoice ChooseCoupling(const KinematicTree& tree, const GraspFrame& grasp
 double InertiaRatio(const KinematicTree& tree, const GraspFrame& grasp, const VectorXd& q,
                     const DeviceInfo& device);
 
-/// The share of a mechanism's inertia that a device can render from measured accelerations, as the
-/// paper does, in (0, 1]: min(1, 0.4 / lambda). Delay in the acceleration turns rendered inertia
-/// against the device's own; at equality it swings up (RenderingBounds::stable_inertia). 1 for a
-/// device that states no masses.
-double StableInertiaShare(const KinematicTree& tree, const GraspFrame& grasp, const VectorXd& q,
-                          const DeviceInfo& device);
-
-/// Stiffness and law of the constraint for a device: its own bounds, or the wanted stiffness if
-/// that is lower. A device without force gets a stiffness that only weighs positions against
-/// rotations.
-ContactLaw ContactLawFor(const DeviceInfo& device, double stiffness);
+/// The handle's masses [kg, kg m^2] on the diagonal; without rotations for a point grasp.
+Vector6d HandleMasses(const GraspFrame& grasp, const DeviceInfo& device);
 
 }  // namespace vmech

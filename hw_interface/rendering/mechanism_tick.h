@@ -1,7 +1,9 @@
 #pragma once
 
+#include <limits>
+
 #include "vmech/dynamics/in_hand/hand_dynamics.h"
-#include "vmech/hw_interface/estimation/pose_estimator.h"
+#include "vmech/hw_interface/estimation/coordinate_estimator.h"
 #include "vmech/hw_interface/rendering/contact_law.h"
 #include "vmech/hw_interface/rendering/peak_forces.h"
 #include "vmech/hw_interface/rendering/tick.h"
@@ -10,12 +12,35 @@
 namespace vmech {
 
 struct MechanismTickOptions {
-  ContactLaw law;  ///< its stiffness is also the metric in which the mechanism follows the hand
-  /// Share of the mechanism's inertia that the hand feels, in [0, 1]: what a measured acceleration
-  /// renders. Lower it where the mechanism is heavier than the device (StableInertiaShare), or take
-  /// CoupledTick.
+  /// As the hand feels it; its stiffness is also the metric in which the mechanism follows the
+  /// hand.
+  ContactLaw law;
+  /// Force at the hand over force at the mechanism, in [1e-6, 1e3]: 0.1 makes it ten times as
+  /// light.
+  double scale = 1;
+  /// Largest share of the mechanism's inertia that the hand feels, in [0, 1]. Weight, springs and
+  /// friction are felt whole.
   double inertia = 1;
-  PoseEstimatorOptions estimator;
+  /// Largest inertia that is felt over the handle's masses D [kg, kg m^2], in (0, 1e6]: the share
+  /// falls where the pose makes the mechanism heavier. Raise it for a truer inertia, lower it for a
+  /// device that hums. D = 0: no limit.
+  double inertia_ratio = 1e6;
+  Vector6d handle_masses = Vector6d::Zero();
+  /// Roll-off of the acceleration [s], in [0, 0.1]: longer renders heavier mechanisms with less
+  /// noise, and lags by as much. For estimators that find velocities alone.
+  double roll_off = 8e-3;
+  /// A hand that is faster than this is braked [m/s], [rad/s], > 0: what falls out of a hand with
+  /// little inertia of its own would be stopped by the safety filter.
+  double max_speed = std::numeric_limits<double>::infinity();
+  double max_angular_speed = std::numeric_limits<double>::infinity();
+  /// Largest w_d as felt [N], [N m], > 0, those of the device: near a pose where the hand hardly
+  /// moves the mechanism, what it takes has no bound.
+  double max_force = std::numeric_limits<double>::infinity();
+  double max_moment = std::numeric_limits<double>::infinity();
+  /// Fastest change of w_d [N/s], in [10, 1e7], and a tenth of it for moments [N m/s].
+  double slew = 5e3;
+  EstimatorOptions estimator;
+  WrenchRule wrench = WrenchRule::kWorkless;
   /// Its stiffness is set from the law. Two steps: the next tick goes on from there.
   TrackOptions track;
 
@@ -28,10 +53,20 @@ struct MechanismTickOptions {
 /// The paper's tick (sections 4 to 6): the pose nearest to the hand, its velocity and acceleration,
 /// what it takes to move the mechanism so, and the pull of the constraint,
 ///
-///   q = argmin e1'K e1, e2 = 0;   V_G, A_G from the poses of G;   F_Ho = -(w_d + w_c).
+///   q = argmin e1'K e1, e2 = 0;   F_Ho = -(s_F w_d + w_c),   s_F the scale.
 ///
-/// Velocities are those of the grasp frame on the mechanism, so that they and the loops agree; the
-/// damping of w_c takes the rate of e1 from an adaptive window. No allocation after construction.
+/// From a hand whose twist is known (HandObserver), the velocity is that of the constrained
+/// minimum, v = P V_H (HandDynamics), and the mechanism's inertia goes with a velocity u that lags
+/// behind it,
+///
+///   u' = (v - u) / t,   w_d = P'(M u' + c(q, u) + weight ..),
+///
+/// an acceleration with a roll-off of first order at 1/(2 pi t), which needs no second difference
+/// of an encoder. The inertia felt is that of s M, s = min(s_max, R / ratio(q)) the share that the
+/// device can render at this pose, and as s changes, s^1/2 u is what keeps its momentum: a
+/// mechanism of that inertia, which gives no energy away. A hand that has stayed within the
+/// device's resolution for 0.2 s is at rest: the steps of its encoders are no motion. The other
+/// estimators take the steps of q itself, as the paper does. No allocation after construction.
 class MechanismTick : public Tick {
  public:
   /// Keeps a reference to the tree. `q`: a closed pose, where the hand takes hold. `device` states
@@ -43,6 +78,9 @@ class MechanismTick : public Tick {
   std::vector<std::string> ChannelNames() const override;
   Posed GraspFrame() const noexcept override { return X_WG_; }
   void Reset() noexcept override;
+  bool UsesObservedHand() const noexcept override {
+    return options_.estimator.kind == EstimatorKind::kObserver;
+  }
   TickOutput Step(const TickInput& input, std::span<double> channels) noexcept override;
 
   void Show(TickPicture* picture) const noexcept override;
@@ -50,23 +88,50 @@ class MechanismTick : public Tick {
   const VectorXd& q() const noexcept { return tracker_.q(); }
   const HandDynamics& dynamics() const noexcept { return dynamics_; }
   const TrackSummary& tracking() const noexcept { return tracker_.summary(); }
+  double share() const noexcept { return share_; }  ///< s of the last tick
   /// Largest force of each joint since the hand took hold [N].
   const std::vector<double>& peak_forces() const noexcept { return peaks_.forces(); }
   std::string FullReport() const override;
 
  private:
-  void Report(const Vector6d& e1, std::span<double> channels) noexcept;
+  Vector6d ReadHand(const TickInput& input, int periods) noexcept;
+  bool FindMotion(int periods) noexcept;
+  void FindShare(double elapsed) noexcept;
+  void FindRest(double elapsed) noexcept;
+  double Moving() const noexcept;
+  void RollOff(const VectorXd& v, double elapsed) noexcept;
+  void Estimate(int periods) noexcept;
+  void FindFeltMotion(double elapsed) noexcept;
+  Vector6d Brake() const noexcept;
+  void Feel(int periods, const Vector6d& charged, const Vector6d& way) noexcept;
+  void AccountForEnergy(double given, double energy) noexcept;
+  void FollowWrench(double elapsed) noexcept;
+  void Report(std::span<double> channels) noexcept;
 
+  const KinematicTree& tree_;
   MechanismTickOptions options_;
   HandTracker tracker_;
   HandDynamics dynamics_;
-  PoseEstimator motion_;
-  std::array<AdaptiveWindow, 6> slip_;
-  Vector6d slip_rate_ = Vector6d::Zero();
-  TrackStatus track_ = TrackStatus::kNotRun;
   double period_;
+  bool has_hand_ = false, starts_ = true;
   Posed X_WH_, X_WG_;
-  Vector6d w_c_ = Vector6d::Zero();  // the pull of the constraint
+  Vector6d V_WH_ = Vector6d::Zero();
+  double resolution_, angular_resolution_;
+  Posed X_rest_;                     // where the hand may be at rest
+  double resting_ = 0;               // since when [s]
+  CoordinateEstimator hand_;         // of a hand that nobody observes
+  CoordinateEstimator coordinates_;  // of q
+  VectorXd hand_step_, q_step_, last_q_;
+  TrackStatus track_ = TrackStatus::kNotRun;
+  MatrixXd S_;
+  VectorXd v_, u_, udot_;      // of the nearest pose; of its inertia
+  VectorXd felt_, felt_rate_;  // s^1/2 u, and s^1/2 times its rate
+  double share_ = 0, last_root_ = 0, least_share_ = 1;
+  Vector6d e1_ = Vector6d::Zero();
+  Vector6d w_d_ = Vector6d::Zero();   // as felt
+  Vector6d w_c_ = Vector6d::Zero();   // the pull of the constraint
+  Vector6d F_Ho_ = Vector6d::Zero();  // what the hand was to feel last
+  double energy_ = 0, unpaid_ = 0;    // of mechanism and constraint as felt [J]
   PeakForces peaks_;
 };
 

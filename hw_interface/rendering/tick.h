@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "vmech/base/screw.h"
+#include "vmech/dynamics/in_hand/wrench_limit.h"
 #include "vmech/hw_interface/loop/recording.h"
 
 namespace vmech {
@@ -28,14 +29,21 @@ struct Registration {
 Registration GraspedAt(const Matrix3d& R_WD, const Posed& X_DH, const Posed& X_WG) noexcept;
 
 struct TickInput {
-  Posed X_WH;          ///< the hand, as measured; not set where an observer knows it
-  bool fresh = false;  ///< false: no new sample, the pose is that of the last tick
-  double elapsed = 0;  ///< since the last fresh sample; a whole number of periods [s]
-  bool held = true;    ///< false: the hand has let go, nothing is felt
+  Posed X_WH;             ///< the hand, as measured; not set where an observer knows it
+  bool fresh = false;     ///< false: no new sample, the pose is that of the last tick
+  double elapsed = 0;     ///< since the last fresh sample; a whole number of periods [s]
+  bool held = true;       ///< false: the hand has let go, nothing is felt
+  WrenchLimit room = {};  ///< what the device can exert at this posture
+  /// Energy that the mechanism got and the hand has not given, as far as it is no error of
+  /// measurement; for ticks whose mechanism moves by itself [J].
+  double debt = 0;
   const MasterState* state = nullptr;
   /// The hand in a fresh sample as an observer knows it (HandObserver); null: nobody observes it.
   /// For ticks that take it (UsesObservedHand) alone.
   const MovingFrame* observed = nullptr;
+  /// What the hand was charged for until this sample, about Ho, axes of W (SafetyFilter): less than
+  /// what the tick wanted where that was more than the device can exert. Null: all of it.
+  const Vector6d* charged_F_Ho_W = nullptr;
 };
 
 enum class TickStatus : std::uint8_t {

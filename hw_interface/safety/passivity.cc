@@ -6,6 +6,12 @@
 #include "vmech/base/screw_algebra.h"
 
 namespace vmech {
+namespace {
+
+/// Over less than this the steps of encoders are taken for speed [s].
+constexpr double kShortest = 1e-3;
+
+}  // namespace
 
 void PassivityOptions::Validate() const {
   CheckRange("PassivityOptions", "credit", credit, 0, 10);
@@ -13,6 +19,10 @@ void PassivityOptions::Validate() const {
   CheckRange("PassivityOptions", "grace", grace, 0, 1);
   CheckRange("PassivityOptions", "forgiven", forgiven, 0, 10);
   CheckRange("PassivityOptions", "largest_debt", largest_debt, 1e-4, 100);
+}
+
+double MostDamping(double mass, const DeviceInfo& info) noexcept {
+  return mass / (2 * std::max(info.period, kShortest) + 4 * info.delay);
 }
 
 PassivityController::PassivityController(const PassivityOptions& options, const DeviceInfo& info)
@@ -27,7 +37,7 @@ PassivityController::PassivityController(const PassivityOptions& options, const 
   // The lighter of the two, as a mass: the angular one turns at the lever.
   double mass = info.linear.mass;
   if (info.angular.mass > 0) mass = std::min(mass, info.angular.mass / lever2);
-  max_damping_ = mass / (2 * info.period + 4 * info.delay);
+  max_damping_ = MostDamping(mass, info);
 }
 
 void PassivityController::Reset() noexcept {
@@ -40,13 +50,14 @@ void PassivityController::Observe(const Screw& F_Ho_D, const Screw& dX, double e
                                   double stored_energy) noexcept {
   if (!knows_stored_) stored_ = stored_energy;
   knows_stored_ = true;
-  V_ = (1 / elapsed) * dX;
-  energy_ += Power(Scaled(own_damping_, V_) - F_Ho_D, dX) - (stored_energy - stored_);
+  const Screw V = (1 / elapsed) * dX;
+  V_ += std::min(1.0, elapsed / kShortest) * (V - V_);
+  energy_ += Power(Scaled(own_damping_, V) - F_Ho_D, dX) - (stored_energy - stored_);
   if (energy_ < 0) energy_ = std::min(0.0, energy_ + options_.forgiven * elapsed);
   energy_ = std::min(energy_, options_.credit);
   stored_ = stored_energy;
   constexpr double kMean = 5e-3;  // [s]
-  mean_V_ += std::min(1.0, elapsed / kMean) * (V_ - mean_V_);
+  mean_V_ += std::min(1.0, elapsed / kMean) * (V - mean_V_);
 }
 
 bool PassivityController::Control(Screw* F_Ho_D) const noexcept {

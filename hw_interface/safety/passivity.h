@@ -25,6 +25,10 @@ struct PassivityOptions {
   void Validate() const;
 };
 
+/// The most damping that a handle of this mass [kg] or [kg m^2] takes without being thrown back,
+/// m / (2 T + 4 delay), T not below a millisecond [N s/m] or [N m s/rad].
+double MostDamping(double mass, const DeviceInfo& info) noexcept;
+
 /// Time-domain passivity observer and controller at the handle [Hannaford & Ryu 2002]. The hand may
 /// get back what it has given and no more:
 ///
@@ -40,8 +44,9 @@ struct PassivityOptions {
 ///   s = min(1, -E/E_g),   f = 1 + min(0, E + E_g)/E_largest,
 ///
 /// alpha = -E / (T V'WV), at most what the handle's mass takes without being thrown back: m / (2 T
-/// + 4 delay). V is the twist of the last sample; within the grace the less of it, and the more of
-/// its mean over 5 ms, the smaller the debt: encoder steps at rest are no motion.
+/// + 4 delay), T not below a millisecond. V is the twist of the last sample, or over a millisecond;
+/// within the grace the less of it, and the more of its mean over 5 ms, the smaller the debt:
+/// encoder steps at rest are no motion.
 class PassivityController {
  public:
   /// @throws std::invalid_argument as Validate.
@@ -58,6 +63,7 @@ class PassivityController {
   bool Control(Screw* F_Ho_D) const noexcept;
 
   double energy() const noexcept { return energy_; }  ///< E [J], at most the credit
+  const Screw& V() const noexcept { return V_; }      ///< the handle's, of the last millisecond
 
  private:
   PassivityOptions options_;

@@ -37,6 +37,15 @@ SafetyOptions Completed(SafetyOptions options, const DeviceInfo& info) {
   return options;
 }
 
+/// -c V of what a speed is beyond most of the one that trips, and no more than `peak` there.
+Double4 BrakingForce(const Double4& V, double c, double max_speed, double peak) {
+  constexpr double kFree = 0.7;
+  const double speed = Length(V), beyond = speed - kFree * max_speed;
+  if (!(beyond > 0)) return Double4{};
+  c = std::min(c, peak / ((1 - kFree) * max_speed));
+  return (-c * beyond / speed) * V;
+}
+
 /// The factor that brings a pair of vectors within a pair of lengths; at most 1.
 double Shrink(const Screw& F, double force, double moment) {
   const double f2 = Dot(F.linear, F.linear), m2 = Dot(F.angular, F.angular);
@@ -65,6 +74,8 @@ SafetyFilter::SafetyFilter(const SafetyOptions& options, const DeviceInfo& info)
     : options_(Completed(options, info)),
       period_(info.period),
       delay_(info.delay),
+      brake_(MostDamping(info.linear.mass, info)),
+      angular_brake_(MostDamping(info.angular.mass, info)),
       passivity_(options.passivity, info) {}
 
 void SafetyFilter::Restart() noexcept {
@@ -100,9 +111,11 @@ SafetyOutput SafetyFilter::Apply(const SafetyInput& input) noexcept VMECH_NONBLO
     return out;
   }
   Screw F = ScrewOf(input.F_Ho_D);
+  if (options_.max_moment == 0) F.angular = Double4{};
   Ramp(&F, &out);
   Damp(&F, &out);
-  Clamp(&F, &out);
+  Brake(&F, &out);
+  Clamp(input.room, &F, &out);
   Slew(&F, &out);
   out.F_Ho_D = Vector6Of(F);
   if (out.stages != 0) CountStages(out.stages);
@@ -114,8 +127,15 @@ void SafetyFilter::CountStages(std::uint32_t stages) noexcept {
   for (int i = 0; i < kSafetyStages; ++i) counters_.stages[i] += (stages >> i) & 1;
 }
 
+/// A sample that the filter has not seen; a device may repeat its last one.
+bool SafetyFilter::IsFresh(const SafetyInput& input) const noexcept {
+  const bool seen = has_pose_ && input.state->sequence == last_sample_.sequence;
+  return input.io == IoStatus::kOk && !seen;
+}
+
 ForceOff SafetyFilter::Gate(const SafetyInput& input) noexcept {
-  missing_ = input.io == IoStatus::kNoNewData ? missing_ + 1 : 0;
+  missing_ = IsFresh(input) ? 0 : missing_ + 1;
+  if (missing_ > 0) catching_up_ = true;
   if (latched_ != ForceOff::kNone) return latched_;
   if (input.state->emergency_stop) return ForceOff::kEmergencyStop;
   if (input.lifecycle != Lifecycle::kActive && input.lifecycle != Lifecycle::kFault) {
@@ -136,33 +156,48 @@ ForceOff SafetyFilter::Gate(const SafetyInput& input) noexcept {
   return ForceOff::kNone;
 }
 
-/// Displacement, twist and energy since the last sample.
+/// Displacement, twist and energy since the last sample, however long ago that was.
 void SafetyFilter::Observe(const SafetyInput& input) noexcept {
+  if (!IsFresh(input)) return;
   const MasterState& state = *input.state;
-  if (!open_) has_pose_ = false;
-  if (has_pose_ && state.sequence == last_sequence_) return;
-  const Frame X = FrameOf(state.X_DH);
   if (has_pose_) {
-    const Screw dX = HandError(X_last_, X);
-    const double elapsed = static_cast<double>(state.sequence - last_sequence_) * period_;
-    // This tick's command is still to come. Somebody else carries what the soft start withholds.
-    const std::uint64_t command = CommandAtWork(state, counters_.ticks - 1);
-    Screw wrench = ExertedBy(command, state);
-    if (command > 0) wrench += withheld_[command % kMemory];
-    passivity_.Observe(wrench, dX, elapsed, input.stored_energy);
+    const Screw dX = HandError(FrameOf(last_sample_.X_DH), FrameOf(state.X_DH));
+    const double elapsed = PeriodsBetween(last_sample_, state, period_) * period_;
+    Account(input, dX, elapsed);
     constexpr double kSmoothing = 5e-3;  // [s]: single encoder steps do not trip
     smooth_V_ += std::min(1.0, elapsed / kSmoothing) * ((1 / elapsed) * dX - smooth_V_);
   } else {
+    Account(input, {}, period_);
     smooth_V_ = {};
-    passivity_.Observe({}, {}, period_, input.stored_energy);
   }
-  X_last_ = X;
-  last_sequence_ = state.sequence;
+  last_sample_ = state;
   has_pose_ = true;
+}
+
+/// Nothing was at work while the gate was closed.
+void SafetyFilter::Account(const SafetyInput& input, const Screw& dX, double elapsed) noexcept {
+  if (!open_) {
+    passivity_.Observe({}, {}, elapsed, input.stored_energy);
+    return;
+  }
+  // This tick's command is still to come.
+  const Screw wrench = ChargedFor(CommandAtWork(*input.state, counters_.ticks - 1), *input.state);
+  passivity_.Observe(wrench, dX, elapsed, input.stored_energy);
 }
 
 Vector6d SafetyFilter::WrenchAtWork(const MasterState& state) const noexcept {
   return Vector6Of(ExertedBy(CommandAtWork(state, counters_.ticks), state));
+}
+
+Vector6d SafetyFilter::WrenchCharged(const MasterState& state) const noexcept {
+  return Vector6Of(ChargedFor(CommandAtWork(state, counters_.ticks), state));
+}
+
+/// Somebody else carries what the soft start withholds.
+Screw SafetyFilter::ChargedFor(std::uint64_t command, const MasterState& state) const noexcept {
+  Screw wrench = ExertedBy(command, state);
+  if (command > 0) wrench += withheld_[command % kMemory];
+  return wrench;
 }
 
 /// Its sequence; 0 if unknown. `latest` is that of the last command sent.
@@ -204,18 +239,36 @@ void SafetyFilter::Damp(Screw* F, SafetyOutput* out) noexcept {
   if (passivity_.Control(F)) out->stages |= kDamped;
 }
 
-void SafetyFilter::Clamp(Screw* F, SafetyOutput* out) noexcept {
-  const double scale = Shrink(*F, options_.max_force, options_.max_moment);
-  if (scale == 1) return;
+void SafetyFilter::Brake(Screw* F, SafetyOutput* out) const noexcept {
+  const Screw& V = passivity_.V();
+  const Screw brake{
+      BrakingForce(V.linear, brake_, options_.max_speed, options_.max_force),
+      BrakingForce(V.angular, angular_brake_, options_.max_angular_speed, options_.max_moment)};
+  if (Power(brake, brake) == 0) return;
+  *F += brake;
+  out->stages |= kBraked;
+}
+
+void SafetyFilter::Clamp(const WrenchLimit& room, Screw* F, SafetyOutput* out) noexcept {
+  const double scale = std::min(Shrink(*F, options_.max_force, options_.max_moment),
+                                room.Share(Length(F->linear), Length(F->angular)));
+  if (scale >= 1) return;
   *F = scale * *F;
   out->stages |= kClamped;
 }
 
 void SafetyFilter::Slew(Screw* F, SafetyOutput* out) noexcept {
   const Screw change = *F - last_;
-  const double scale =
-      Shrink(change, options_.force_slew * period_, options_.moment_slew * period_);
-  if (scale == 1) return;
+  double force = options_.force_slew, moment = options_.moment_slew;
+  if (catching_up_) {
+    force = std::min(force, kCatchUp);
+    moment = std::min(moment, kCatchUpMoment);
+  }
+  const double scale = Shrink(change, force * period_, moment * period_);
+  if (scale == 1) {
+    catching_up_ = missing_ > 0;
+    return;
+  }
   *F = last_ + scale * change;
   out->stages |= kSlewed;
 }
@@ -250,6 +303,27 @@ const char* NameOf(ForceOff cause) noexcept {
       return "energy";
   }
   return "";
+}
+
+const char* AdviceFor(ForceOff cause) noexcept {
+  switch (cause) {
+    case ForceOff::kEmergencyStop:
+      return "release the emergency stop and start again";
+    case ForceOff::kLinkLost:
+      return "look at the cable and at the program on the device's side, then start again";
+    case ForceOff::kDeviceFault:
+      return "the device has switched its motors off: clear its fault, then start again";
+    case ForceOff::kNonFinite:
+      return "a figure was no number: check the device's calibration; the last ticks show which";
+    case ForceOff::kSpeed:
+      return "hold the handle more firmly, let the mechanism weigh less with --scale, or give its "
+             "joints viscous friction";
+    case ForceOff::kEnergy:
+      return "render less with --scale, give the joints viscous friction, hold more firmly, or "
+             "check the masses, delay and resolution that the device states";
+    default:
+      return "";
+  }
 }
 
 }  // namespace vmech

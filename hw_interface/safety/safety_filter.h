@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
+
 #include "vmech/base/nonblocking.h"
+#include "vmech/dynamics/in_hand/wrench_limit.h"
 #include "vmech/hw_interface/masters/master.h"
 #include "vmech/hw_interface/safety/passivity.h"
 
@@ -21,6 +24,8 @@ enum class ForceOff : std::uint8_t {
 };
 /// "emergency stop", ...
 const char* NameOf(ForceOff cause) noexcept;
+/// What to do about a cause that trips, "" for the others: "render less with --scale, ...".
+const char* AdviceFor(ForceOff cause) noexcept;
 
 /// Stages that changed the wrench of a tick, as bits; also the order of the chain.
 enum SafetyStage : std::uint32_t {
@@ -28,8 +33,9 @@ enum SafetyStage : std::uint32_t {
   kDamped = 1u << 1,
   kClamped = 1u << 2,
   kSlewed = 1u << 3,
+  kBraked = 1u << 4,
 };
-inline constexpr int kSafetyStages = 4;
+inline constexpr int kSafetyStages = 5;
 
 struct SafetyOptions {
   double soft_start = 0.5;  ///< ramp from nothing to the whole wrench [s], in [0, 10]
@@ -57,6 +63,7 @@ struct SafetyInput {
   const MasterState* state = nullptr;  ///< of the read
   Vector6d F_Ho_D = Vector6d::Zero();  ///< what the tick wants
   double stored_energy = 0;            ///< of the virtual mechanism [J]; see passivity.h
+  WrenchLimit room = {};               ///< what the device can exert at this posture
 };
 
 struct SafetyOutput {
@@ -77,8 +84,14 @@ struct SafetyCounters {
 
 /// The last word on every wrench, between the tick and the device, for any device:
 ///
-///   finite? - gate (life cycle, link, e-stop, dead man) - soft start - passivity - clamp on |f|
-///   and |m| that keeps the direction - slew limit - trips on speed and energy.
+///   finite? - gate (life cycle, link, e-stop, dead man) - soft start - passivity - brake - clamp
+///   on |f| and |m| that keeps the direction - slew limit - trips on speed and energy.
+///
+/// The brake is a damper on what the handle is faster than 0.7 of the speed that trips: something
+/// heavy that falls drags the handle along, and does not throw it.
+/// Of a device that exerts no moment the moments are dropped first. After a sample that is missing
+/// the wrench changes no faster than kCatchUp until it is again the one that is wanted; the speed
+/// of the hand is judged over the gap.
 ///
 /// The energy is that of the wrench which was really at work: sensed by the device, or told by its
 /// echo, or else the one sent a delay ago.
@@ -104,39 +117,51 @@ class SafetyFilter {
   /// What the device exerted during the period before its latest sample: sensed, or told by its
   /// echo, or else sent a delay ago. Before Apply of that sample.
   Vector6d WrenchAtWork(const MasterState& state) const noexcept;
+  /// The same with what the soft start withheld of it, where that is carried: what is charged.
+  Vector6d WrenchCharged(const MasterState& state) const noexcept;
 
   ForceOff latched() const noexcept { return latched_; }
   const SafetyCounters& counters() const noexcept { return counters_; }
+  /// The energy that the hand has not given, beyond the grace of the passivity controller [J].
+  double Debt() const noexcept {
+    return std::max(0.0, -passivity_.energy() - options_.passivity.grace);
+  }
   /// Largest debt of energy [J]: the trip, and what the greatest force does at the greatest speed
   /// while commands on their way arrive and the last one expires.
   double EnergyBound() const noexcept;
 
  private:
   static constexpr std::uint64_t kMemory = 64;
+  static constexpr double kCatchUp = 1000, kCatchUpMoment = 50;  // [N/s], [N m/s]
 
   ForceOff Gate(const SafetyInput& input) noexcept;
   void CountStages(std::uint32_t stages) noexcept;
+  bool IsFresh(const SafetyInput& input) const noexcept;
   void Observe(const SafetyInput& input) noexcept;
+  void Account(const SafetyInput& input, const Screw& dX, double elapsed) noexcept;
   std::uint64_t CommandAtWork(const MasterState& state, std::uint64_t latest) const noexcept;
   Screw ExertedBy(std::uint64_t command, const MasterState& state) const noexcept;
+  Screw ChargedFor(std::uint64_t command, const MasterState& state) const noexcept;
   ForceOff Trip() const noexcept;
   // The stages that change the wrench of this tick.
   void Ramp(Screw* F, SafetyOutput* out) noexcept;
   void Damp(Screw* F, SafetyOutput* out) noexcept;
-  void Clamp(Screw* F, SafetyOutput* out) noexcept;
+  void Brake(Screw* F, SafetyOutput* out) const noexcept;
+  void Clamp(const WrenchLimit& room, Screw* F, SafetyOutput* out) noexcept;
   void Slew(Screw* F, SafetyOutput* out) noexcept;
 
   SafetyOptions options_;
   double period_, delay_;
+  double brake_, angular_brake_;  // [N s/m], [N m s/rad]
   PassivityController passivity_;
   SafetyCounters counters_;
   ForceOff latched_ = ForceOff::kNone;
-  bool open_ = false;      // the gate in the last tick
-  bool has_pose_ = false;  // X_last_ is valid
-  int missing_ = 0;        // samples in a row
-  double opened_for_ = 0;  // [s]
-  std::uint64_t last_sequence_ = 0;
-  Frame X_last_;
+  bool open_ = false;         // the gate in the last tick
+  bool has_pose_ = false;     // last_sample_ is one
+  bool catching_up_ = false;  // after a missing sample
+  int missing_ = 0;           // samples in a row
+  double opened_for_ = 0;     // [s]
+  MasterState last_sample_;
   Screw smooth_V_;                              // for the trip
   Screw last_;                                  // the last wrench that went out
   std::array<Screw, kMemory> sent_, withheld_;  // by sequence

@@ -26,27 +26,30 @@ Vector3d Turn(const TreeNode& node, const VectorXd& a, const VectorXd& b) {
 
 }  // namespace
 
-VectorXd ConfigurationDifference(const KinematicTree& tree, const VectorXd& a, const VectorXd& b) {
-  VectorXd difference = VectorXd::Zero(tree.nv);
+void CoordinateDifference(const KinematicTree& tree, const VectorXd& a, const VectorXd& b,
+                          VectorXd* difference) noexcept {
   for (const TreeNode& node : tree.nodes) {
     switch (node.motion) {
       case NodeMotion::kFixed:
         break;
       case NodeMotion::kSpherical:
-        difference.segment<3>(node.v) = Turn(node, a, b);
+        difference->segment<3>(node.v) = Turn(node, a, b);
         break;
       case NodeMotion::kPrismatic:
-        difference[node.v] = (b[node.q] - a[node.q]) / tree.length;
-        break;
       case NodeMotion::kScrew:
-        difference[node.v] = b[node.q] - a[node.q];
+        (*difference)[node.v] = b[node.q] - a[node.q];
         break;
       case NodeMotion::kRevolute:
-        difference[node.v] = AngleTo(node, a, b);
+        (*difference)[node.v] = AngleTo(node, a, b);
         break;
     }
   }
-  return difference;
+}
+
+VectorXd ConfigurationDifference(const KinematicTree& tree, const VectorXd& a, const VectorXd& b) {
+  VectorXd difference = VectorXd::Zero(tree.nv);
+  CoordinateDifference(tree, a, b, &difference);
+  return difference.cwiseQuotient(TangentScale(tree));
 }
 
 double ConfigurationDistance(const KinematicTree& tree, const VectorXd& a, const VectorXd& b) {

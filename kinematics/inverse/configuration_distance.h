@@ -4,8 +4,11 @@
 
 namespace vmech {
 
-/// From one configuration to another: a velocity [nv, radians and characteristic lengths] that
-/// leads from a to b in a unit of time, each joint by the shorter way round.
+/// From one configuration to another: the way [nv; rad, m] that leads from a to b, each joint by
+/// the shorter way round; MoveCoordinates goes it. No allocation.
+void CoordinateDifference(const KinematicTree& tree, const VectorXd& a, const VectorXd& b,
+                          VectorXd* difference) noexcept;
+/// The same in radians and characteristic lengths.
 VectorXd ConfigurationDifference(const KinematicTree& tree, const VectorXd& a, const VectorXd& b);
 
 /// How far two configurations are apart: the norm of the differences of all coordinates of the

@@ -376,6 +376,20 @@ bool HandTracker::WithinLimits() const noexcept {
   return true;
 }
 
+/// E P S P, P = 1 - N N' without the unseen motions N.
+void HandTracker::ComputeCurvature(MatrixXd* S) noexcept {
+  problem_.Curvature(q_, good_multipliers_, S);
+  *S *= problem_.energy();
+  for (Eigen::Index k = 0; k < unseen_.cols(); ++k) {
+    const auto n = unseen_.col(k);
+    step_ = S->lazyProduct(n);
+    const double along = n.dot(step_);
+    S->noalias() -= step_.lazyProduct(n.transpose());
+    S->noalias() -= n.lazyProduct(step_.transpose());
+    S->noalias() += along * n.lazyProduct(n.transpose());
+  }
+}
+
 TrackStatus HandTracker::Accept(Progress progress) noexcept {
   good_multipliers_ = workspace_.multipliers;
   MoveToTrial();

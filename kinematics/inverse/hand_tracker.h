@@ -89,6 +89,10 @@ class HandTracker {
   const VectorXd& multipliers() const { return workspace_.multipliers; }
   InverseKinematics& kinematics() { return problem_; }
   const TrackSummary& summary() const { return summary_; }
+  /// S [nv, nv; J]: the second derivatives of 1/2 e1'K e1 + mu'e2 at q(), for the target that was
+  /// followed last; nothing along motions that neither hand nor loops see. They vanish where the
+  /// hand is on the mechanism's path.
+  void ComputeCurvature(MatrixXd* S) noexcept;
 
  private:
   /// Moves the shortest way to c = 0: no residual, J = 1.

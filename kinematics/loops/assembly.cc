@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <stdexcept>
 
 #include "vmech/base/linear_algebra/linear_algebra.h"
+#include "vmech/base/linear_algebra/normal_equations.h"
 #include "vmech/kinematics/loops/closure.h"
 #include "vmech/kinematics/loops/dimensionless_loops.h"
 #include "vmech/kinematics/loops/loop_clusters.h"
@@ -55,7 +57,7 @@ class PenaltyIteration {
   /// False when no step makes progress any more.
   bool Step() {
     const VectorXd departure = Departure(q_);
-    const MatrixXd C = ScaledJacobian();
+    const std::vector<RowBlock> C = ScaledJacobian();
     const VectorXd wanted = ScaledErrors() + shift_;
     const double merit = Merit();
     const VectorXd q_before = q_;
@@ -86,6 +88,7 @@ class PenaltyIteration {
 
  private:
   static constexpr double kMultiplierRegion = 0.1;  // linearisation is worth something
+  static constexpr double kChain = 0.2;             // of H is within its envelope
   static constexpr double kShortestStep = 1e-10;    // far above roundoff, far below any stiffness
   static constexpr double kLongestStep = 0.5;       // [rad], or characteristic lengths
 
@@ -96,8 +99,22 @@ class PenaltyIteration {
 
   VectorXd ScaledErrors() const { return row_scale_.cwiseProduct(StackedLoopErrors(tree_, ws_)); }
 
-  MatrixXd ScaledJacobian() const {
-    return row_scale_.asDiagonal() * DenseLoopJacobian(tree_, ws_) * free_.asDiagonal();
+  /// Loop by loop.
+  std::vector<RowBlock> ScaledJacobian() const {
+    std::vector<RowBlock> blocks;
+    for (size_t l = 0; l < tree_.loops.size(); ++l) {
+      const Loop& loop = tree_.loops[l];
+      RowBlock block{{}, MatrixXd(loop.rows, std::ssize(loop.columns))};
+      const auto scale = row_scale_.segment(loop.row, loop.rows).array();
+      for (const LoopColumn& c : loop.columns) {
+        const Eigen::Index k = std::ssize(block.columns);
+        const Vector6d& column = ws_.loop_columns[ws_.first_column[l] + k];
+        block.A.col(k) = scale * column.head(loop.rows).array() * free_[c.v];
+        block.columns.push_back(c.v);
+      }
+      blocks.push_back(std::move(block));
+    }
+    return blocks;
   }
 
   /// The tangent vector from q to the given coordinates.
@@ -131,10 +148,20 @@ class PenaltyIteration {
 
   /// minimise |C x - e|^2 + weight |x - x0|^2_W over what may move, W the coordinate weights: of
   /// x = H^-1 (C' e + weight W x0), H = C' C + weight W, and
-  /// x = x0 + W^-1 C' z, (C W^-1 C' + weight 1) z = e - C x0, the one with the smaller matrix.
-  VectorXd PenaltyStep(const MatrixXd& C, const VectorXd& e, double weight,
+  /// x = x0 + W^-1 C' z, (C W^-1 C' + weight 1) z = e - C x0, the one with the smaller matrix; or H
+  /// within its envelope, where loops hang together in a chain.
+  VectorXd PenaltyStep(const std::vector<RowBlock>& blocks, const VectorXd& e, double weight,
                        const VectorXd& x0) const {
     const VectorXd& W = coordinate_weight_;
+    const VectorXd weighted = weight * W.cwiseProduct(free_.cwiseProduct(x0));
+    if (ShareOfEnvelope(tree_.nv, blocks) < kChain) {
+      return free_.cwiseProduct(SolveNormalEquations(blocks, e, weight * W, weighted));
+    }
+    MatrixXd C = MatrixXd::Zero(tree_.rows, tree_.nv);
+    for (size_t l = 0; l < blocks.size(); ++l) {
+      const Loop& loop = tree_.loops[l];
+      C.middleRows(loop.row, loop.rows)(Eigen::all, blocks[l].columns) = blocks[l].A;
+    }
     if (C.rows() < C.cols()) {
       const MatrixXd D = C * W.cwiseInverse().asDiagonal();
       MatrixXd M = D * C.transpose();
@@ -143,8 +170,7 @@ class PenaltyIteration {
     }
     MatrixXd H = C.transpose() * C;
     H.diagonal() += weight * W;
-    return free_.cwiseProduct(
-        SolveSymmetric(H, C.transpose() * e + weight * W.cwiseProduct(free_.cwiseProduct(x0))));
+    return free_.cwiseProduct(SolveSymmetric(H, C.transpose() * e + weighted));
   }
 
   const KinematicTree& tree_;

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <vector>
+
+#include "vmech/base/linear_algebra/block_null_space.h"
 #include "vmech/kinematics/tree/kinematic_tree.h"
+#include "vmech/kinematics/tree/tree_workspace.h"
 
 namespace vmech {
 
@@ -9,6 +13,15 @@ VectorXd VelocityScale(const KinematicTree& tree);
 
 /// The scaled loop Jacobian at q: rows and columns of lengths measured in characteristic lengths.
 MatrixXd DimensionlessLoopJacobian(const KinematicTree& tree, const VectorXd& q);
+
+/// The rows of a loop in it, by its columns. Needs LoopJacobian in ws.
+RowBlock DimensionlessLoopRows(const KinematicTree& tree, const TreeWorkspace<double>& ws,
+                               size_t loop);
+
+/// The dimensionless motions of a closed pose, those of the `held` velocities [nv] left out: the
+/// null space of its C, loop by loop, with kRankTolerance.
+BlockNullSpace LoopNullSpace(const KinematicTree& tree, const VectorXd& q,
+                             const std::vector<bool>& held = {});
 
 /// Pivots of the dimensionless C below this, or this times the largest, count as zero. Closed poses
 /// are known to 1e-13; a real freedom leaves pivots of the order of 1.

@@ -140,8 +140,7 @@ Walk FindWalk(const KinematicTree& tree, const VectorXd& q, double largest_misfi
 bool EveryLoopMoves(const KinematicTree& tree, const VectorXd& q) {
   const std::vector<LoopCluster> clusters = SplitLoops(tree);
   return std::all_of(clusters.begin(), clusters.end(), [&](const LoopCluster& cluster) {
-    const MatrixXd C = DimensionlessLoopJacobian(cluster.tree, q(cluster.q));
-    return RowSpace(C, kRankTolerance).rank() < cluster.tree.nv;
+    return LoopNullSpace(cluster.tree, q(cluster.q)).dimension() > 0;
   });
 }
 

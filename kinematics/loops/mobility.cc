@@ -22,13 +22,12 @@ namespace {
 constexpr double kMoves = 1e-6;  // share of a unit motion that counts as moving
 
 /// Free motions of a cluster as velocities [nv, some of them and the sum of all].
-MatrixXd SomeFreeMotions(const KinematicTree& tree, const RowSpace& constrained) {
-  constexpr Eigen::Index kMost = 12;
-  const Eigen::Index free = tree.nv - constrained.rank();
-  const Eigen::Index some = std::min(free, kMost);
-  MatrixXd coordinates = MatrixXd::Identity(free, some + (free > 1));
-  if (free > 1) coordinates.col(some).setOnes();
-  return VelocityScale(tree).asDiagonal() * constrained.FromNullSpace(coordinates);
+MatrixXd SomeFreeMotions(const KinematicTree& tree, const BlockNullSpace& free) {
+  constexpr int kMost = 12;
+  const int all = free.dimension(), some = std::min(all, kMost);
+  MatrixXd coordinates = MatrixXd::Identity(all, some + (all > 1));
+  if (all > 1) coordinates.col(some).setOnes();
+  return VelocityScale(tree).asDiagonal() * free.FromCoordinates(coordinates);
 }
 
 /// Closed poses a little way along free motions of q, to both sides, and along their sum.
@@ -50,19 +49,19 @@ std::vector<VectorXd> Neighbours(const KinematicTree& tree, const VectorXd& q,
   return neighbours;
 }
 
-RowSpace ConstrainedAt(const KinematicTree& tree, const VectorXd& q) {
-  return {DimensionlessLoopJacobian(tree, q), kRankTolerance};
-}
-
-/// Relative twists [v; w] of the anchors of a cut joint by the velocities, dimensionless [6, nv].
+/// Relative twists [v; w] of the anchors of a cut joint by the velocities of its loop,
+/// dimensionless [6, columns].
 MatrixXd AnchorTwists(const KinematicTree& tree, const TreeWorkspace<double>& ws, size_t loop) {
-  MatrixXd twists = MatrixXd::Zero(6, tree.nv);
-  for (const LoopColumn& c : tree.loops[loop].columns) {
-    const Screw S = c.sign * ws.S[c.v];
-    twists.col(c.v) = Vector6Of(Screw{VelocityAt(ws.loops[loop].F.p, S), S.angular});
+  const std::vector<LoopColumn>& columns = tree.loops[loop].columns;
+  MatrixXd twists(6, std::ssize(columns));
+  for (size_t k = 0; k < columns.size(); ++k) {
+    const Screw S = columns[k].sign * ws.S[columns[k].v];
+    const Screw at_anchor{VelocityAt(ws.loops[loop].F.p, S), S.angular};
+    const bool slides = tree.nodes[columns[k].node].motion == NodeMotion::kPrismatic;
+    twists.col(k) = (slides ? tree.length : 1) * Vector6Of(at_anchor);
   }
   twists.topRows<3>() /= tree.length;
-  return twists * VelocityScale(tree).asDiagonal();
+  return twists;
 }
 
 /// How a cluster can move.
@@ -73,23 +72,20 @@ struct ClusterMobility {
   std::vector<bool> node_moves, cut_moves;  ///< by node and by loop, against the neighbours
 };
 
-/// Marks what a motion that `constrained` leaves free moves at q: a vector that it moves along has
-/// a share outside the rows.
-void AddMoving(const KinematicTree& tree, const VectorXd& q, const RowSpace& constrained,
+/// Marks what the motions that are free at q move: a vector that one of them has a share in.
+void AddMoving(const KinematicTree& tree, const VectorXd& q, const BlockNullSpace& free,
                ClusterMobility* result) {
-  const MatrixXd B = constrained.Basis();
-  for (size_t n = 0; n < tree.nodes.size(); ++n) {
-    for (int k = 0; k < VelocitiesOf(tree.nodes[n].motion); ++k) {
-      const double free = 1 - B.row(tree.nodes[n].v + k).squaredNorm();
-      result->node_moves[n] = result->node_moves[n] || free > kMoves * kMoves;
-    }
-  }
   TreeWorkspace<double> ws(tree);
   EvaluatePose(tree, q, &ws, false);
   for (size_t l = 0; l < tree.loops.size(); ++l) {
-    const MatrixXd T = AnchorTwists(tree, ws, l);
-    const MatrixXd free = T - (T * B) * B.transpose();
-    result->cut_moves[l] = result->cut_moves[l] || free.rowwise().norm().maxCoeff() > kMoves;
+    const std::vector<LoopColumn>& columns = tree.loops[l].columns;
+    const Eigen::Index count = std::ssize(columns);
+    const VectorXd share = free.LargestOf(l, MatrixXd::Identity(count, count));
+    for (size_t k = 0; k < columns.size(); ++k) {
+      if (share[static_cast<Eigen::Index>(k)] > kMoves) result->node_moves[columns[k].node] = true;
+    }
+    const VectorXd between = free.LargestOf(l, AnchorTwists(tree, ws, l));
+    if (between.maxCoeff() > kMoves) result->cut_moves[l] = true;
   }
 }
 
@@ -97,10 +93,10 @@ ClusterMobility AnalyseCluster(const KinematicTree& tree, const VectorXd& q) {
   std::vector<VectorXd> poses{q};
   std::vector<int> ranks;
   {
-    const RowSpace here = ConstrainedAt(tree, q);
+    const BlockNullSpace here = LoopNullSpace(tree, q);
     ranks.push_back(here.rank());
     for (VectorXd& near : Neighbours(tree, q, SomeFreeMotions(tree, here))) {
-      ranks.push_back(ConstrainedAt(tree, near).rank());
+      ranks.push_back(LoopNullSpace(tree, near).rank());
       poses.push_back(std::move(near));
     }
   }
@@ -113,7 +109,7 @@ ClusterMobility AnalyseCluster(const KinematicTree& tree, const VectorXd& q) {
   result.cut_moves.assign(tree.loops.size(), false);
   // At one pose alone a joint may stand still for a moment, as a rocker does where it turns back.
   for (size_t i = 0; i < poses.size(); ++i) {
-    if (ranks[i] == *best) AddMoving(tree, poses[i], ConstrainedAt(tree, poses[i]), &result);
+    if (ranks[i] == *best) AddMoving(tree, poses[i], LoopNullSpace(tree, poses[i]), &result);
   }
   return result;
 }
@@ -144,16 +140,6 @@ std::vector<bool> LooseJoints(const KinematicTree& tree, const std::vector<LoopC
   return loose;
 }
 
-NullSpace FreeAt(const KinematicTree& tree, const VectorXd& q) {
-  return FindNullSpace(DimensionlessLoopJacobian(tree, q), kRankTolerance);
-}
-
-MatrixXd Columns(const MatrixXd& A, const std::vector<int>& columns) {
-  MatrixXd B(A.rows(), static_cast<Eigen::Index>(columns.size()));
-  for (size_t k = 0; k < columns.size(); ++k) B.col(k) = A.col(columns[k]);
-  return B;
-}
-
 }  // namespace
 
 Mobility AnalyseMobility(const KinematicTree& tree, const VectorXd& q) {
@@ -175,35 +161,27 @@ CoordinatePartition PartitionForDrives(const KinematicTree& tree, const VectorXd
                                        const std::vector<int>& driven) {
   RequireCoordinates("PartitionForDrives: q", tree, q_general);
   RequireVelocities("PartitionForDrives: driven", tree, driven);
-  const MatrixXd C = DimensionlessLoopJacobian(tree, q_general);
-  const NullSpace free = FindNullSpace(C, kRankTolerance);
-  MatrixXd driven_rows(driven.size(), free.basis.cols());
-  for (size_t k = 0; k < driven.size(); ++k) driven_rows.row(k) = free.basis.row(driven[k]);
-  const int controlled = FindNullSpace(driven_rows, kRankTolerance).rank;
+  const MatrixXd free = LoopNullSpace(tree, q_general).Basis();
+  const int controlled = FindNullSpace(free(driven, Eigen::all), kRankTolerance).rank;
   if (controlled < static_cast<int>(driven.size())) {
     std::string names;
     for (int v : driven) names += (names.empty() ? "'" : ", '") + NameOfVelocity(tree, v) + "'";
     throw std::invalid_argument(fmt::format(
         "the drives at {} cannot all move as they like: the mechanism has mobility {} and they "
         "control {} of it; drive fewer joints, or other ones",
-        names, free.basis.cols(), controlled));
+        names, free.cols(), controlled));
   }
 
-  const CoordinatePartition first = MakePartition(tree, driven, {});
-  const NullSpace loose = FindNullSpace(Columns(C, first.dependent), kRankTolerance);
-  if (loose.basis.cols() == 0) return first;
-  std::vector<int> idle;
-  for (int slot : MostIndependentRows(loose.basis, static_cast<int>(loose.basis.cols()))) {
-    idle.push_back(first.dependent[slot]);
-  }
-  return MakePartition(tree, driven, idle);
+  std::vector<bool> held(tree.nv, false);
+  for (const int v : driven) held[v] = true;
+  const MatrixXd loose = LoopNullSpace(tree, q_general, held).Basis();
+  return MakePartition(tree, driven, MostIndependentRows(loose, static_cast<int>(loose.cols())));
 }
 
 CoordinatePartition PartitionAtPose(const KinematicTree& tree, const VectorXd& q) {
   RequireCoordinates("PartitionAtPose: q", tree, q);
-  const NullSpace free = FreeAt(tree, q);
-  return MakePartition(tree, MostIndependentRows(free.basis, static_cast<int>(free.basis.cols())),
-                       {});
+  const MatrixXd free = LoopNullSpace(tree, q).Basis();
+  return MakePartition(tree, MostIndependentRows(free, static_cast<int>(free.cols())), {});
 }
 
 }  // namespace vmech

@@ -10,6 +10,7 @@
 #include "vmech/kinematics/loops/closure.h"
 #include "vmech/kinematics/loops/loop_walk.h"
 #include "vmech/kinematics/loops/loops.h"
+#include "vmech/kinematics/loops/mechanism_parts.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
 
 namespace vmech {
@@ -99,6 +100,7 @@ class AnchorMoves {
   const KinematicTree& tree_;
   std::map<Id, int> index_;
 };
+
 SpanningTreeOptions SameCuts(const KinematicTree& tree) {
   SpanningTreeOptions options;
   options.cut = tree.spanning.cuts;
@@ -117,7 +119,9 @@ class AnchorFit {
       const VectorXd p = Step();
       Mechanism moved = tree_.mechanism;
       AnchorMoves(tree_).Apply(p, &moved);
+      const double length = tree_.length;
       tree_ = BuildKinematicTree(std::move(moved), SameCuts(tree_));
+      tree_.length = length;
       walk_.misfit = Close();
       const bool slow = walk_.misfit > 0.5 * before;
       if (slow && (i > 1 || walk_.misfit <= kMade)) break;
@@ -192,21 +196,39 @@ void MeasureCorrection(const KinematicTree& drawn, Reconciliation* result) {
   result->correction = count > 0 ? std::sqrt(sum / count) : 0;
 }
 
+/// Moves the anchors of a part and enters them, with its pose, into the whole. False if it does not
+/// close.
+bool ReconcilePart(const MechanismPart& part, const ReconcileOptions& options,
+                   Reconciliation* whole) {
+  Walk walk = FindWalk(part.tree, whole->q(part.q), options.largest_misfit, options.poses);
+  if (walk.poses.empty()) return false;
+  AnchorFit fit(part.tree, std::move(walk));
+  if (!fit.Run()) return false;
+  const Mechanism& moved = fit.tree().mechanism;
+  for (size_t k = 0; k < part.joints.size(); ++k) {
+    const Joint &here = moved.joints[k], &there = whole->mechanism.joints[part.joints[k]];
+    for (const auto& [from, to] :
+         {std::pair(here.first, there.first), {here.second, there.second}}) {
+      whole->mechanism.links[to.link].anchors[to.anchor].X_LA = moved.anchor(from).X_LA;
+    }
+  }
+  whole->q(part.q) = fit.q();
+  whole->misfit = std::max(whole->misfit, fit.misfit());
+  return true;
+}
+
 }  // namespace
 
 Reconciliation Reconcile(const KinematicTree& tree, const VectorXd& q,
                          const ReconcileOptions& options) {
-  Reconciliation result;
-  result.mechanism = tree.mechanism;
-  result.q = q;
-  Walk walk = FindWalk(tree, q, options.largest_misfit, options.poses);
-  if (walk.poses.empty()) return result;
-  AnchorFit fit(tree, std::move(walk));
-  if (!fit.Run()) return result;
+  Reconciliation drawn;
+  drawn.mechanism = tree.mechanism;
+  drawn.q = q;
+  Reconciliation result = drawn;
+  for (const MechanismPart& part : SplitMechanism(tree)) {
+    if (!ReconcilePart(part, options, &result)) return drawn;
+  }
   result.closes = true;
-  result.mechanism = fit.tree().mechanism;
-  result.q = fit.q();
-  result.misfit = fit.misfit();
   MeasureCorrection(tree, &result);
   return result;
 }

@@ -34,7 +34,8 @@ struct ReconcileOptions {
 ///
 /// U_k the left null space of the dimensionless C there: what no motion can close. The q_k follow
 /// by least squares over all rows, C dq = e2 with pivots that are rounding taken as zero. What is a
-/// pivot and what is rounding is judged by the misfit that a walk along the motion leaves.
+/// pivot and what is rounding is judged by the misfit that a walk along the motion leaves. Parts of
+/// a mechanism that have no velocity and no anchor in common are reconciled one by one.
 ///
 /// q: a pose near to closed. Nothing is made where the misfit is beyond `largest_misfit`, or where
 /// the pivots are not those of rounding: `closes` is then false, `mechanism` and `q` are as given.

@@ -398,6 +398,14 @@ class Loads(InFolder):
             self.assertEqual(acceleration, 0)
             self.assertAlmostEqual(x, r * c + along, delta=1e-12)
             self.assertAlmostEqual(dx, w * (slope - r * s), delta=1e-10)
+        summary = json.loads((self.folder / "out" / "summary.json").read_text(encoding="utf-8"))
+        guide, = summary["joints"][-1]["motion"]
+        self.assertAlmostEqual(guide["stroke"], 2 * r, delta=1e-9)
+        self.assertAlmostEqual(guide["greatest"], rod + r, delta=1e-9)
+        self.assertAlmostEqual(summary["joints"][-1]["time_ratio"], 1, delta=1e-6)
+        # Least where the crank stands across the slide: sin = r / rod from the normal.
+        self.assertAlmostEqual(summary["transmission_angle"]["least"], math.acos(r / rod),
+                               delta=1e-3)
             second = -(r * r * math.cos(2 * angle) + slope ** 2) / along
             self.assertAlmostEqual(ddx, w * w * (second - r * c), delta=1e-7)
 

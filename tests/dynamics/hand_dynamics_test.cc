@@ -2,12 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+#include <cmath>
 #include <numbers>
 
 #include "support/examples.h"
+#include "vmech/base/rotation_error.h"
 #include "vmech/dynamics/loads/load_result.h"
 #include "vmech/dynamics/loads/load_study.h"
 #include "vmech/dynamics/loads/run_load_study.h"
+#include "vmech/kinematics/inverse/configuration_distance.h"
+#include "vmech/kinematics/inverse/hand_tracker.h"
 #include "vmech/kinematics/loops/assembly.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
 
@@ -143,6 +148,117 @@ TEST_P(EveryHeldExample, HandWrenchLiesAlongTheFreeMotion) {
   dynamics.SetPose(held_.q);
   ASSERT_TRUE(dynamics.Evaluate(yielding, Vector6d::Zero()));
   EXPECT_LT((J * dynamics.v() - yielding).norm(), 1e-7 * yielding.norm());
+}
+
+/// A hand that is well beside the path, and moves.
+struct BesideThePath {
+  BesideThePath(const Held& held, const Vector6d& K)
+      : options(InTheMetric(K)), tracker(held.tree, held.frame, held.q, options) {
+    way << 0.01, -0.015, 0.012, 0.05, 0.08, -0.04;
+    X_WH = Displaced(held.X_WG, way);
+  }
+  static TrackOptions InTheMetric(const Vector6d& K) {
+    TrackOptions options;
+    options.kinematics.stiffness = K;
+    options.step_tolerance = 1e-12;
+    options.steps = 20;
+    return options;
+  }
+  VectorXd PoseAt(const Posed& X) {
+    for (int i = 0; i < 5; ++i) static_cast<void>(tracker.Advance(X));
+    return tracker.q();
+  }
+
+  TrackOptions options;
+  HandTracker tracker;
+  Vector6d way;
+  Posed X_WH;
+};
+
+TEST_P(EveryHeldExample, VelocityIsThatOfTheNearestPose) {
+  BesideThePath hand(held_, K_);
+  Vector6d V;
+  V << 0.3, 0.2, -0.4, 0.5, -0.3, 0.6;
+  constexpr double kStep = 1e-4;
+  const VectorXd after = hand.PoseAt(Displaced(hand.X_WH, kStep * V));
+  const VectorXd before = hand.PoseAt(Displaced(hand.X_WH, -kStep * V));
+  const VectorXd q = hand.PoseAt(hand.X_WH);
+  VectorXd expected = VectorXd::Zero(held_.tree.nv);
+  CoordinateDifference(held_.tree, before, after, &expected);
+  expected /= 2 * kStep;
+  MatrixXd S = MatrixXd::Zero(held_.tree.nv, held_.tree.nv);
+  hand.tracker.ComputeCurvature(&S);
+  HandDynamics dynamics(held_.tree, held_.frame, K_, held_.q);
+  dynamics.SetPose(q);
+  const Vector3d turn = HandError(dynamics.SetPose(q), hand.X_WH).tail<3>();
+  ASSERT_TRUE(dynamics.FindVelocities(V, &S, turn));
+  // To first order of the rotation that is left, 0.1 rad.
+  EXPECT_LT((dynamics.v() - expected).norm(), 0.01 * expected.norm());
+}
+
+TEST_P(EveryHeldExample, HandBesideThePathGivesWhatTheMechanismGets) {
+  BesideThePath hand(held_, K_);
+  const VectorXd q = hand.PoseAt(hand.X_WH);
+  MatrixXd S = MatrixXd::Zero(held_.tree.nv, held_.tree.nv);
+  hand.tracker.ComputeCurvature(&S);
+  HandDynamics dynamics(held_.tree, held_.frame, K_, held_.q);
+  dynamics.SetPose(q);
+  const Vector6d V = Vector6d::Constant(0.3);
+  const Vector3d turn = HandError(dynamics.SetPose(q), hand.X_WH).tail<3>();
+  ASSERT_TRUE(dynamics.FindVelocities(V, &S, turn));
+  const VectorXd v = dynamics.v(), still = VectorXd::Zero(held_.tree.nv);
+  ASSERT_TRUE(dynamics.Evaluate(v, still, still));
+  const double power = dynamics.w_d().dot(V);
+  // The rate at which the weight rises.
+  const auto height = [&](double t) {
+    VectorXd there = q;
+    MoveCoordinates(held_.tree, t * v, &there);
+    dynamics.SetPose(there);
+    return dynamics.Energy();
+  };
+  constexpr double kStep = 1e-4;
+  const double rate = (height(kStep) - height(-kStep)) / (2 * kStep);
+  EXPECT_NEAR(power, rate, 1e-5 * (1 + std::abs(power)));
+}
+
+TEST_P(EveryHeldExample, InertiaRatioIsTheLargestThatTheHandleMeets) {
+  HandDynamics dynamics(held_.tree, held_.frame, K_, held_.q);
+  dynamics.SetPose(held_.q);
+  Vector6d D;
+  D << 0.8, 0.8, 0.8, 0.005, 0.005, 0.005;
+  Matrix6d accelerated;  // what the hand exerts for each unit acceleration from rest, less weight
+  ASSERT_TRUE(dynamics.Evaluate(Vector6d::Zero(), Vector6d::Zero()));
+  const Vector6d weight = dynamics.w_d();
+  for (int i = 0; i < 6; ++i) {
+    ASSERT_TRUE(dynamics.Evaluate(Vector6d::Zero(), Vector6d::Unit(i)));
+    accelerated.col(i) = dynamics.w_d() - weight;
+  }
+  const Vector6d root = D.cwiseSqrt().cwiseInverse();
+  const Matrix6d normal = root.asDiagonal() * accelerated * root.asDiagonal();
+  const double largest = Eigen::SelfAdjointEigenSolver<Matrix6d>(normal).eigenvalues()[5];
+  ASSERT_TRUE(dynamics.FindVelocities(Vector6d::Zero(), nullptr));
+  double ratio = 0;
+  for (int i = 0; i < 60; ++i) ratio = dynamics.InertiaRatio(D);
+  EXPECT_NEAR(ratio / largest, 1, 1e-3);
+}
+
+TEST_P(EveryHeldExample, PapersWrenchIsThatOfTheLoadStudyByEquation14) {
+  const HandLaw law = Motion();
+  LoadStudy study;
+  study.mechanism = held_.tree.mechanism;
+  study.hand = HandDrive{held_.index, law, K_};
+  study.times = {0};
+  study.rule = ReactionRule::kPaperJoint;
+  const auto expected = RunLoadStudy(study).poses[0];
+  HandDynamics dynamics(held_.tree, held_.frame, K_, held_.q, WrenchRule::kPaper);
+  const HandSample hand = law.At(0);
+  dynamics.SetPose(held_.q);
+  ASSERT_TRUE(dynamics.Evaluate(hand.V_WH, hand.A_WH));
+  const double scale = 1 + expected.hand.Stacked().norm();
+  EXPECT_LT((dynamics.w_d() - expected.hand.Stacked()).norm(), 1e-5 * scale);
+  for (size_t j = 0; j < dynamics.joints().size(); ++j) {
+    EXPECT_LT((dynamics.joints()[j] - expected.joints[j]).Stacked().norm(), 1e-5 * scale) << j;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Examples, EveryHeldExample,

@@ -97,7 +97,7 @@ TEST_F(SarcosArm, PowerOfTorquesAndHandIsTheRateOfTheEnergy) {
 }
 
 TEST_F(SarcosArm, HandMassMovesWithTheHandle) {
-  ArmModel with(std::make_shared<const ArmDescription>(SarcosMasterArm(0.5)));
+  ArmModel with(std::make_shared<const ArmDescription>(WithMassAtHandle(SarcosMasterArm(), 0.5)));
   const VectorXd q = arm_.description().posture + random_.Vector(7, 0.3);
   arm_.SetPosture(q.data());
   with.SetPosture(q.data());

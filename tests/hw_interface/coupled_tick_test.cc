@@ -24,9 +24,8 @@ namespace {
 constexpr double kPeriod = 1e-3;
 constexpr double kSmoothing = 2e-3;
 
-Posed HandleOf(const SimulatedMasterOptions& options) {
-  return ArmModel(std::make_shared<const ArmDescription>(SarcosMasterArm(options.hand.mass)))
-      .X_DH();
+Posed HandleStart() {
+  return ArmModel(std::make_shared<const ArmDescription>(SarcosMasterArm())).X_DH();
 }
 
 /// A mechanism on the coupling that suits a simulated arm; the whole session can run.
@@ -169,7 +168,7 @@ class EveryCoupledSession : public testing::TestWithParam<std::string> {};
 
 TEST_P(EveryCoupledSession, RunsWithoutAFault) {
   SimulatedMasterOptions arm;
-  arm.motion = Wander(HandleOf(arm), 0.04, 0.15, 2);
+  arm.motion = Wander(HandleStart(), 0.04, 0.15, 2);
   Session session(Example(GetParam()), "handle", arm);
   const RunSummary summary = session.Run(5);
   EXPECT_EQ(summary.status, RunStatus::kFinished) << summary.FullReport();
@@ -198,7 +197,7 @@ std::complex<double> FeltOverTrueInertia(const std::string& name, double hertz) 
       kReach * JN.col(0) / (JN.col(0).head<3>().norm() + 0.1 * JN.col(0).tail<3>().norm());
   SimulatedMasterOptions arm;
   arm.hand = ImpedanceOf(Grip::kFirm);
-  const Posed X_DH = HandleOf(arm);
+  const Posed X_DH = HandleStart();
   const double rate = 2 * std::numbers::pi * hertz;
   arm.motion = [=](double t) {
     const Vector6d s = std::sin(rate * t) * way;

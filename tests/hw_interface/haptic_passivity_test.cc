@@ -53,8 +53,7 @@ SimulatedMasterOptions RandomArm(Random* random, unsigned seed) {
   arm.delay_periods = static_cast<int>(seed / 28 % 4);
   arm.lost_share = 0.1;
   arm.seed = seed;
-  const Posed X_DH =
-      ArmModel(std::make_shared<const ArmDescription>(SarcosMasterArm(arm.hand.mass))).X_DH();
+  const Posed X_DH = ArmModel(std::make_shared<const ArmDescription>(SarcosMasterArm())).X_DH();
   arm.motion = Wander(X_DH, random->Between(0, 0.1), random->Between(0, 0.4), seed);
   return arm;
 }

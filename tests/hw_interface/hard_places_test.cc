@@ -60,20 +60,19 @@ Mechanism StiffElbow() {
 
 /// An operator with a firm grip swings the hand by `reach` along the device's axes.
 struct Session {
-  Session(const Mechanism& mechanism, const Vector3d& reach)
-      : tree(BuildKinematicTree(mechanism)), q(StartCoordinates(tree)), master(Arm(reach)) {
+  Session(const Mechanism& mechanism, const Vector3d& reach, double hertz = 0.5)
+      : tree(BuildKinematicTree(mechanism)), q(StartCoordinates(tree)), master(Arm(reach, hertz)) {
     EXPECT_TRUE(Assemble(tree, {}, &q).closed);
     master.Configure();
     choice = ChooseCoupling(tree, GraspFrameOf(tree, 0), q, master.info(), 2 * kPeriod);
   }
 
-  static SimulatedMasterOptions Arm(const Vector3d& reach) {
+  static SimulatedMasterOptions Arm(const Vector3d& reach, double hertz) {
     SimulatedMasterOptions options;
     options.hand = ImpedanceOf(Grip::kFirm);
-    const Posed X_DH =
-        ArmModel(std::make_shared<const ArmDescription>(SarcosMasterArm(options.hand.mass))).X_DH();
+    const Posed X_DH = ArmModel(std::make_shared<const ArmDescription>(SarcosMasterArm())).X_DH();
     options.motion = [=](double t) {
-      const double rate = 2 * std::numbers::pi * 0.5;
+      const double rate = 2 * std::numbers::pi * hertz;
       HandTargetMotion target{X_DH, Vector6d::Zero()};
       target.X_DT.p += std::sin(rate * t) * reach;
       target.V_DT.head<3>() = rate * std::cos(rate * t) * reach;
@@ -87,10 +86,20 @@ struct Session {
     options.seconds = 6;
     options.realtime.reset();
     options.safety = safety;
+    options.record = true;
     FreeRunningClock clock;
-    const RunSummary summary = Runner(options, &master, tick, &clock).Run();
+    Runner runner(options, &master, tick, &clock);
+    const RunSummary summary = runner.Run();
+    ExpectNothingWithheld(runner.Kept());
     EXPECT_LE(summary.peak_force, master.info().linear.peak * (1 + 1e-9));
     return summary;
+  }
+  /// The arm exerted what it was sent.
+  static void ExpectNothingWithheld(const Recording& recording) {
+    for (size_t k = 1; k < recording.ticks.size(); ++k) {
+      const Vector6d exerted = recording.ticks[k].state.applied_F_Ho_D;
+      ASSERT_LT((exerted - recording.ticks[k - 1].sent_F_Ho_D).norm(), 1e-9) << k;
+    }
   }
   CoupledTick Coupled() {
     CoupledTickOptions options;
@@ -124,6 +133,41 @@ TEST(HardPlaces, ElbowStopsAtItsLimitAndSaysSo) {
   EXPECT_EQ(summary.status, RunStatus::kFinished) << summary.FullReport();
   EXPECT_GT(tick.summary().at_limit, 10);
   EXPECT_LT(watched.farthest, kJump);
+}
+
+/// The mechanism is never pushed with more than the arm has for the hand beside its own weight.
+TEST(HardPlaces, AFirmHandShakesTheFourBarAtTwoHertz) {
+  const Mechanism mechanism = Example("four-bar");
+  for (const Vector3d& reach : {Vector3d(0.05, 0, 0), Vector3d(0, 0.05, 0), Vector3d(0, 0, 0.05)}) {
+    Session session(mechanism, reach, 2);
+    CoupledTick tick = session.Coupled();
+    const RunSummary summary = session.Run(&tick, session.choice.Safety());
+    EXPECT_EQ(summary.status, RunStatus::kFinished) << reach.transpose() << summary.FullReport();
+  }
+}
+
+/// At the dead centre the hand sees no inertia at all; beside it, nearly a wall.
+TEST(HardPlaces, AHandAtADeadCentreGetsTheCouplingOfThePosesAbout) {
+  Mechanism mechanism = PistonInHand();
+  for (Joint& joint : mechanism.joints) {
+    if (joint.type == JointType::kRevolute) joint.start = {0};
+  }
+  Session session(mechanism, Vector3d(0.03, 0.03, 0));
+  const double beside = Session(PistonInHand(), Vector3d::Zero()).choice.coupling.stiffness[0];
+  EXPECT_GE(session.choice.coupling.stiffness[0], beside);
+  CoupledTick tick = session.Coupled();
+  const RunSummary summary = session.Run(&tick, session.choice.Safety());
+  EXPECT_EQ(summary.status, RunStatus::kFinished) << summary.FullReport();
+}
+
+/// Two heavy links below the one that is held swing as they like.
+TEST(HardPlaces, LooseHeavyLinksDoNotTrip) {
+  Mechanism mechanism = Example("redundant-arm");
+  mechanism.grasps = {{"first", 1, Posed{}, GraspKind::kRigid}};
+  Session session(mechanism, Vector3d(0.05, 0.05, 0), 1);
+  CoupledTick tick = session.Coupled();
+  const RunSummary summary = session.Run(&tick, session.choice.Safety());
+  EXPECT_EQ(summary.status, RunStatus::kFinished) << summary.FullReport();
 }
 
 TEST(HardPlaces, HandBeyondTheReachIsPulledWithNoMoreThanTheDeviceCan) {

@@ -1,10 +1,12 @@
 #include "hw_interface/held_tick.h"
 
+#include <utility>
+
 #include "hw_interface/tick_input.h"
 #include "support/examples.h"
 #include "vmech/hw_interface/masters/simulated_master.h"
 #include "vmech/hw_interface/rendering/coupling_choice.h"
-#include "vmech/hw_interface/safety/stability.h"
+#include "vmech/hw_interface/rendering/paper_choice.h"
 
 namespace vmech {
 namespace {
@@ -30,11 +32,9 @@ std::unique_ptr<Tick> MakeTick(const KinematicTree& tree, int grasp, const Devic
                                Architecture architecture, SafetyOptions* safety) {
   const VectorXd q = ClosedStart(tree);
   if (architecture == Architecture::kPaper) {
-    RenderingGains wanted;
-    wanted.stiffness.setConstant(1e9);
-    MechanismTickOptions options;
-    options.law.stiffness = LimitedGains(device, wanted).stiffness;
-    return std::make_unique<MechanismTick>(tree, grasp, q, device, options);
+    const PaperChoice choice = ChoosePaper({}, tree, grasp, q, device);
+    *safety = choice.safety;
+    return std::make_unique<MechanismTick>(tree, grasp, q, device, choice.tick);
   }
   CoupledTickOptions options;
   const CouplingChoice choice =
@@ -107,6 +107,16 @@ void HeldTick::Filter() {
 
 void HeldTick::Resolve() {
   torques_->Resolve(NextSample(), true, &command_);
+}
+
+TripleBuffer<TickPicture>* HeldTick::Show() {
+  TickPicture picture;
+  picture.q = ClosedStart(*tree_);
+  picture.joints.resize(tree_->mechanism.joints.size());
+  auto shown = std::make_unique<ShownTick>(std::move(tick_), picture);
+  TripleBuffer<TickPicture>* pictures = &shown->pictures();
+  tick_ = std::move(shown);
+  return pictures;
 }
 
 /// The hand of the samples goes its way whatever it feels: as if the arm exerted nothing.

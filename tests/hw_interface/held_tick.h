@@ -10,6 +10,7 @@
 #include "vmech/hw_interface/rendering/coupled_tick.h"
 #include "vmech/hw_interface/rendering/mechanism_tick.h"
 #include "vmech/hw_interface/safety/safety_filter.h"
+#include "vmech/hw_interface/screen/shown_tick.h"
 
 namespace vmech {
 
@@ -34,6 +35,9 @@ class HeldTick {
   void Step();
   void Filter();
   void Resolve();
+
+  /// From now on a screen may look at it, through what is returned.
+  TripleBuffer<TickPicture>* Show();
 
   /// Why the safety filter lets no force through, if it does not.
   ForceOff force_off() const { return force_off_; }

@@ -1,6 +1,7 @@
 #include "vmech/hw_interface/masters/master.h"
 
 #include <stdexcept>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -15,14 +16,23 @@ class RecordingMaster : public Master {
   IoStatus next_read = IoStatus::kOk;
   DeviceInfo stated;
   bool let_go = false;
+  std::uint32_t senses = kSensesPose | kSensesJoints, valid = senses;
+  double x = 0;
 
  private:
   DeviceInfo OnConfigure() override {
     stated.takes_wrench = true;
+    stated.senses = senses;
     return stated;
   }
   void OnShutdown() noexcept override { let_go = true; }
-  IoStatus OnRead(std::int64_t, MasterState*) noexcept override { return next_read; }
+  IoStatus OnRead(std::int64_t, MasterState* state) noexcept override {
+    state->sequence++;
+    state->valid = valid;
+    state->X_DH.p.x() = x;
+    state->dead_man = true;
+    return next_read;
+  }
   IoStatus OnWrite(const MasterCommand& command) noexcept override {
     last = command;
     return IoStatus::kOk;
@@ -81,6 +91,54 @@ TEST(Master, StaysAtFaultUntilItRecovers) {
   master.Recover();
   master.Activate();
   EXPECT_EQ(master.lifecycle(), Lifecycle::kActive);
+}
+
+TEST(Master, TakesASampleWithoutAPoseForNone) {
+  RecordingMaster master;
+  master.Configure();
+  master.x = 1;
+  MasterState state;
+  EXPECT_EQ(master.Read(0, &state), IoStatus::kOk);
+  for (const std::uint32_t valid : {0u, std::uint32_t{kSensesPose}, std::uint32_t{kSensesJoints}}) {
+    master.valid = valid;
+    master.x = 2;
+    const std::uint64_t sequence = state.sequence;
+    EXPECT_EQ(master.Read(1'000'000, &state), IoStatus::kNoNewData) << valid;
+    EXPECT_EQ(state.X_DH.p.x(), 1);
+    EXPECT_EQ(state.sequence, sequence);
+    EXPECT_EQ(state.host_time_ns, 1'000'000);
+    EXPECT_TRUE(state.dead_man);
+  }
+  master.valid = master.senses;
+  EXPECT_EQ(master.Read(2'000'000, &state), IoStatus::kOk);
+  EXPECT_EQ(state.X_DH.p.x(), 2);
+}
+
+TEST(Master, RefusesADeviceThatSensesNoPose) {
+  RecordingMaster master;
+  master.stated.name = "blind";
+  master.senses = kSensesButtons;
+  try {
+    master.Configure();
+    FAIL();
+  } catch (const std::logic_error& error) {
+    EXPECT_NE(std::string(error.what()).find("device 'blind' states that it senses no pose"),
+              std::string::npos);
+  }
+  EXPECT_TRUE(master.let_go);
+}
+
+TEST(Master, CountsPeriodsByTheSequenceAsFarAsTheClockAllows) {
+  MasterState earlier, later;
+  earlier.sequence = 10;
+  later.sequence = 14;
+  later.host_time_ns = 4'000'000;
+  EXPECT_EQ(PeriodsBetween(earlier, later, 1e-3), 4);
+  later.sequence = 1'000'000;
+  EXPECT_EQ(PeriodsBetween(earlier, later, 1e-3), 12);
+  later.sequence = 5;  // a device that starts anew
+  EXPECT_EQ(PeriodsBetween(earlier, later, 1e-3), 12);
+  EXPECT_EQ(PeriodsBetween(earlier, earlier, 1e-3), 1);
 }
 
 TEST(Master, LetsADeviceGoThatStatesImpossiblePhysics) {

@@ -7,10 +7,6 @@
 
 #include "support/examples.h"
 #include "vmech/base/rotation_error.h"
-#include "vmech/hw_interface/loop/runner.h"
-#include "vmech/hw_interface/masters/simulated_master.h"
-#include "vmech/hw_interface/rendering/coupling_choice.h"
-#include "vmech/hw_interface/safety/stability.h"
 #include "vmech/kinematics/loops/assembly.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
 
@@ -134,41 +130,6 @@ TEST(MechanismTick, RefusesAGraspThatLeavesALinkLoose) {
   arm.grasps[FindGrasp(arm, "handle")].link = FindLink(arm, "upper-arm");
   EXPECT_THROW(Held(arm, "handle", With(Spring(500))), std::invalid_argument);
 }
-
-/// The whole session: an arm, its operator, a mechanism in between.
-class EverySession : public testing::TestWithParam<std::string> {};
-
-TEST_P(EverySession, RunsWithoutAFault) {
-  const Mechanism mechanism = Example(GetParam());
-  const KinematicTree tree = BuildKinematicTree(mechanism);
-  SimulatedMasterOptions arm;
-  arm.motion = Wander(ArmModel(std::make_shared<const ArmDescription>(SarcosMasterArm())).X_DH(),
-                      0.04, 0.15, 2);
-  SimulatedMaster master(arm);
-  master.Configure();
-  RenderingGains wanted;
-  wanted.stiffness.setConstant(1e9);
-  ContactLaw law;
-  law.stiffness = LimitedGains(master.info(), wanted).stiffness;
-  const int grasp = FindGrasp(mechanism, "handle");
-  const VectorXd start = ClosedStart(tree);
-  MechanismTickOptions tick_options = With(law);
-  tick_options.inertia = StableInertiaShare(tree, GraspFrameOf(tree, grasp), start, master.info());
-  MechanismTick tick(tree, grasp, start, master.info(), tick_options);
-  RunnerOptions options;
-  options.seconds = 4;  // bennett, heavier than the handle, trips on energy some time after this
-  options.realtime.reset();
-  FreeRunningClock clock;
-  const RunSummary summary = Runner(options, &master, &tick, &clock).Run();
-  EXPECT_EQ(summary.status, RunStatus::kFinished) << summary.FullReport();
-  EXPECT_LT(tick.tracking().worst_closure, 1e-9);
-  EXPECT_EQ(tick.tracking().jumps, 0);
-}
-
-INSTANTIATE_TEST_SUITE_P(Examples, EverySession,
-                         testing::Values("crank", "two-link-arm", "slider-crank", "four-bar",
-                                         "rssr", "bennett"),
-                         [](const auto& info) { return TestName(info.param); });
 
 }  // namespace
 }  // namespace vmech

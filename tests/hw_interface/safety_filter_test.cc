@@ -157,6 +157,90 @@ TEST_F(Chain, TripsOnSpeedButNotOnOneEncoderStep) {
   EXPECT_EQ(off, ForceOff::kSpeed);
 }
 
+/// A spring of 1 N/mm to the device, held anew after every gap; 20 N at most.
+Vector6d SpringTo(const Vector3d& p) {
+  return Stacked<double>(-1000 * p, Vector3d::Zero());
+}
+
+/// Gaps of 1 to 50 samples, and then the hand is somewhere else: a metre away trips, five
+/// millimetres are caught up with softly.
+TEST_F(Chain, AGapFollowedByALeapIsNoBlow) {
+  for (const double leap : {5e-3, 1.0}) {
+    for (int gap = 1; gap <= 50; ++gap) {
+      SafetyOptions options;
+      options.soft_start = 0.5;
+      options.force_slew = 5e4;
+      SafetyFilter filter(options, SmallDevice());
+      MasterState state;
+      state.dead_man = true;
+      Vector6d last = Vector6d::Zero();
+      ForceOff off = ForceOff::kNone;
+      for (int k = 0; k < 1500; ++k) {
+        const bool missing = k >= 600 && k < 600 + gap;
+        state.host_time_ns = k * 1'000'000LL;
+        if (!missing) {
+          state.sequence = k + 1;
+          state.X_DH.p.x() = k >= 600 + gap ? leap : 0;
+        }
+        const IoStatus io = missing ? IoStatus::kNoNewData : IoStatus::kOk;
+        const SafetyOutput out = filter.Apply({lifecycle_, io, &state, SpringTo(state.X_DH.p), 0});
+        if (out.off == ForceOff::kNone) {
+          EXPECT_LE((out.F_Ho_D - last).norm(), 1 + 1e-9) << leap << " m after " << gap;
+        }
+        last = out.F_Ho_D;
+        off = out.off;
+      }
+      if (leap == 1.0) {
+        EXPECT_EQ(off, ForceOff::kSpeed) << gap;
+      } else if (gap > 2) {  // nearer in time, 5 mm are more than the 2 m/s of the device
+        EXPECT_EQ(off, ForceOff::kNone) << gap;
+        EXPECT_NEAR(last[0], -5, 0.1) << gap;
+      }
+    }
+  }
+}
+
+/// A sequence number that runs away from the clock does not make a leap slow.
+TEST_F(Chain, ALeapIsJudgedByTheHostsClockToo) {
+  SafetyFilter filter(Bare(), SmallDevice());
+  EXPECT_EQ(Apply(&filter, push_).off, ForceOff::kNone);
+  state_.sequence += 1'000'000;
+  state_.host_time_ns += 1'000'000;
+  state_.X_DH.p.x() += 1;
+  EXPECT_EQ(Apply(&filter, push_).off, ForceOff::kSpeed);
+}
+
+TEST_F(Chain, ADeviceThatRepeatsItsSampleGoesStale) {
+  SafetyFilter filter(Bare(), SmallDevice());
+  EXPECT_EQ(Apply(&filter, push_).off, ForceOff::kNone);
+  for (int k = 0; k < 5; ++k) {
+    EXPECT_EQ(filter.Apply({lifecycle_, io_, &state_, push_, 0}).off, ForceOff::kNone);
+  }
+  EXPECT_EQ(filter.Apply({lifecycle_, io_, &state_, push_, 0}).off, ForceOff::kStale);
+}
+
+TEST_F(Chain, DropsTheMomentsThatADeviceCannotExert) {
+  DeviceInfo device = SmallDevice();
+  device.angular.peak = 0;
+  SafetyFilter filter(Bare(), device);
+  Vector6d F;
+  F << 1, 2, 3, 0.1, 0.2, 0.3;
+  const SafetyOutput out = Apply(&filter, F);
+  EXPECT_EQ(out.F_Ho_D.head<3>(), F.head<3>());
+  EXPECT_EQ(out.F_Ho_D.tail<3>(), Vector3d::Zero());
+}
+
+TEST_F(Chain, KeepsForceAndMomentWithinTheRoomOfThePosture) {
+  SafetyFilter filter(Bare(), SmallDevice());
+  Vector6d F;
+  F << 0, 6, 8, 0, 0, 0.5;
+  ++state_.sequence;
+  // 10 N of 10 N and 0.5 N m of 1 N m, from the same motors: one and a half times what they have.
+  const SafetyOutput out = filter.Apply({lifecycle_, io_, &state_, F, 0, WrenchLimit{10, 1, true}});
+  EXPECT_LT((out.F_Ho_D - F / 1.5).norm(), 1e-12);
+  EXPECT_EQ(out.stages, kClamped);
+}
+
 TEST_F(Chain, TripsWhenItGivesEnergyForNothing) {
   SafetyOptions options = Bare();
   options.energy_trip = 0.1;

@@ -1,12 +1,19 @@
 #include "vmech/kinematics/loops/loop_clusters.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include <gtest/gtest.h>
 
 #include "support/examples.h"
+#include "vmech/base/linear_algebra/linear_algebra.h"
+#include "vmech/base/linear_algebra/normal_equations.h"
+#include "vmech/kinematics/loops/assembled_mechanism.h"
 #include "vmech/kinematics/loops/closure.h"
+#include "vmech/kinematics/loops/dimensionless_loops.h"
+#include "vmech/kinematics/loops/mechanism_parts.h"
 #include "vmech/kinematics/loops/mobility.h"
+#include "vmech/kinematics/loops/reconcile.h"
 
 namespace vmech {
 namespace {
@@ -115,6 +122,78 @@ TEST(LoopClusters, HaveTheEquationsOfTheWhole) {
   }
 }
 
+TEST(MechanismParts, HaveTheLoopsAndTheCoordinatesOfTheWhole) {
+  constexpr double kRounding = 1e-12;
+  Random random(6);
+  for (const KinematicTree& tree : AllTrees()) {
+    const VectorXd q = RandomCoordinates(tree, &random);
+    const VectorXd e = EquationsAt(tree, q).first;
+    int rows = 0;
+    for (const MechanismPart& part : SplitMechanism(tree)) {
+      EXPECT_EQ(part.tree.length, tree.length);
+      const VectorXd e_p = EquationsAt(part.tree, q(part.q)).first;
+      for (const Loop& loop : part.tree.loops) {
+        const auto same = std::find_if(tree.loops.begin(), tree.loops.end(), [&](const Loop& o) {
+          return o.joint == part.joints[loop.joint];
+        });
+        ASSERT_NE(same, tree.loops.end());
+        const VectorXd difference =
+            e_p.segment(loop.row, loop.rows) - e.segment(same->row, same->rows);
+        EXPECT_LT(difference.norm(), kRounding) << tree.mechanism.name;
+        rows += loop.rows;
+      }
+    }
+    EXPECT_EQ(rows, tree.rows) << tree.mechanism.name;
+  }
+  EXPECT_EQ(SplitMechanism(Tower()).size(), 3u);
+}
+
+TEST(MechanismParts, WithAnAnchorInCommonStayTogether) {
+  Mechanism mechanism = ParseMechanism(kTower, "tower.yaml");
+  // The door hangs from where the second parallelogram is joined.
+  mechanism.joints[FindJoint(mechanism, "up")].first.anchor = 1;
+  const std::vector<MechanismPart> parts = SplitMechanism(BuildKinematicTree(mechanism));
+  ASSERT_EQ(parts.size(), 2u);
+  EXPECT_EQ(parts[0].joints.size(), 4u);
+  EXPECT_EQ(parts[1].joints.size(), 6u);
+}
+
+/// Turns the axes of some links by less than a drawing shows.
+void Round(Mechanism* mechanism, std::initializer_list<const char*> links) {
+  constexpr double kRounding = 3e-7;
+  for (const char* link : links) {
+    Posed& X_LA = mechanism->links[FindLink(*mechanism, link)].anchors[1].X_LA;
+    X_LA.R *= Eigen::AngleAxisd(kRounding, Vector3d::UnitX()).toRotationMatrix();
+  }
+}
+
+TEST(Reconcile, MovesWhatIsRoundedAndNothingElse) {
+  Mechanism drawn = ParseMechanism(kTower, "tower.yaml");
+  {
+    const KinematicTree tree = BuildKinematicTree(drawn);
+    VectorXd q = StartCoordinates(tree);
+    ASSERT_TRUE(Assemble(tree, {}, &q).closed);
+    SetStarts(tree, q, &drawn);
+  }
+  Round(&drawn, {"p1", "q1"});
+  const KinematicTree tree = BuildKinematicTree(drawn);
+  const Reconciliation found = Reconcile(tree, StartCoordinates(tree));
+  ASSERT_TRUE(found.closes);
+  EXPECT_LE(found.misfit, 1e-12);
+  EXPECT_GT(found.correction, 1e-8);
+  EXPECT_LE(found.correction, 3e-7);
+  const KinematicTree moved = BuildKinematicTree(found.mechanism);
+  EXPECT_EQ(AnalyseMobility(moved, found.q).mobility, 4);
+  for (const char* link : {"base", "rocker", "p0", "q0", "door"}) {
+    const int index = FindLink(drawn, link);
+    for (size_t a = 0; a < drawn.links[index].anchors.size(); ++a) {
+      const Posed &before = drawn.links[index].anchors[a].X_LA,
+                  &after = found.mechanism.links[index].anchors[a].X_LA;
+      EXPECT_LT((after.R - before.R).norm() + (after.p - before.p).norm(), 1e-14) << link;
+    }
+  }
+}
+
 TEST(LoopClusters, AreAssembledOneByOne) {
   const KinematicTree tree = Tower();
   const VectorXd given = StartCoordinates(tree);
@@ -143,6 +222,86 @@ TEST(LoopClusters, ThatCannotBeClosedAreNamed) {
   const std::string& name = mechanism.joints[summary.worst_joint].name;
   EXPECT_TRUE(name == "a1" || name == "b1" || name == "c1" || name == "d1") << name;
   EXPECT_NE(summary.message.find("through joint '" + name + "'"), std::string::npos);
+}
+
+void ExpectSame(const BlockNullSpace& blocks, const MatrixXd& A, const std::string& what) {
+  constexpr double kRounding = 1e-11;
+  const NullSpace dense = FindNullSpace(A, kRankTolerance);
+  ASSERT_EQ(blocks.rank(), dense.rank) << what;
+  ASSERT_EQ(blocks.dimension(), dense.basis.cols()) << what;
+  const MatrixXd N = blocks.Basis();
+  const MatrixXd difference = N * N.transpose() - dense.basis * dense.basis.transpose();
+  EXPECT_LT(difference.norm(), kRounding) << what;
+  const MatrixXd gram = N.transpose() * N;
+  EXPECT_TRUE(gram.isIdentity(kRounding)) << what;
+}
+
+/// A chain of blocks: three rows, one of them redundant, of five columns, two of which the next
+/// block has, too; of every third block only one.
+std::vector<RowBlock> ChainOfBlocks(int count, int* columns) {
+  Random random(3);
+  std::vector<RowBlock> blocks;
+  int first = 0;
+  for (int b = 0; b < count; ++b) {
+    RowBlock block{{}, MatrixXd(3, 5)};
+    for (int k = 0; k < 5; ++k) block.columns.push_back(first + (3 * k) % 5);
+    for (int i = 0; i < 10; ++i) block.A(i % 2, i / 2) = random.Between(-1, 1);
+    block.A.row(2) = block.A.row(0) - 0.5 * block.A.row(1);
+    first += b % 3 == 2 ? 4 : 3;
+    blocks.push_back(block);
+  }
+  *columns = first + 6;  // the last is in no block
+  return blocks;
+}
+
+TEST(BlockNullSpace, IsThatOfTheWholeMatrix) {
+  int columns = 0;
+  const std::vector<RowBlock> blocks = ChainOfBlocks(20, &columns);
+  MatrixXd A = MatrixXd::Zero(60, columns);
+  for (int b = 0; b < 20; ++b) A.middleRows(3 * b, 3)(Eigen::all, blocks[b].columns) = blocks[b].A;
+  const BlockNullSpace whole(columns, blocks, kRankTolerance);
+  ExpectSame(whole, A, "all columns");
+  const MatrixXd N = whole.Basis();
+  for (const size_t b : {0, 7, 19}) {
+    const MatrixXd T = MatrixXd::Random(4, 5);
+    const MatrixXd moved = T * N(blocks[b].columns, Eigen::all);
+    EXPECT_LT((whole.LargestOf(b, T) - moved.rowwise().norm()).norm(), 1e-12) << b;
+  }
+  std::vector<bool> held(columns, false);
+  MatrixXd of_held = MatrixXd::Zero(8, columns);
+  for (int k = 0; k < 8; ++k) {
+    held[7 * k] = true;
+    of_held(k, 7 * k) = 1;
+  }
+  MatrixXd stacked(A.rows() + 8, columns);
+  stacked << A, of_held;
+  const MatrixXd M = BlockNullSpace(columns, blocks, kRankTolerance, held).Basis();
+  EXPECT_EQ(M.cols(), columns - FindNullSpace(stacked, kRankTolerance).rank);
+  EXPECT_LT((stacked * M).norm(), 1e-12);
+  EXPECT_TRUE((M.transpose() * M).isIdentity(1e-12));
+}
+
+TEST(NormalEquations, AreSolvedWithinTheirEnvelope) {
+  int columns = 0;
+  const std::vector<RowBlock> blocks = ChainOfBlocks(20, &columns);
+  MatrixXd A = MatrixXd::Zero(60, columns);
+  for (int b = 0; b < 20; ++b) A.middleRows(3 * b, 3)(Eigen::all, blocks[b].columns) = blocks[b].A;
+  Random random(4);
+  const VectorXd e = random.Vector(60), b = random.Vector(columns);
+  const VectorXd D = random.Vector(columns).array() + 1.1;
+  const VectorXd x = SolveNormalEquations(blocks, e, D, b);
+  const VectorXd left = A.transpose() * (A * x - e) + D.cwiseProduct(x) - b;
+  EXPECT_LT(left.norm(), 1e-12);
+  EXPECT_LT(ShareOfEnvelope(columns, blocks), 0.2);
+  EXPECT_EQ(ShareOfEnvelope(5, {blocks[0]}), 1);
+}
+
+TEST(LoopNullSpace, IsThatOfTheLoopJacobian) {
+  for (const KinematicTree& tree : AllTrees()) {
+    VectorXd q = StartCoordinates(tree);
+    ASSERT_TRUE(Assemble(tree, {}, &q).closed) << tree.mechanism.name;
+    ExpectSame(LoopNullSpace(tree, q), DimensionlessLoopJacobian(tree, q), tree.mechanism.name);
+  }
 }
 
 TEST(Mobility, IsTheSumOverClustersAndWhatClosesNoLoop) {

@@ -145,6 +145,10 @@ class Hand(CommandTest):
         self.assertAlmostEqual(hinge[0] + force[0], 0, delta=1e-4)
         self.assertAlmostEqual(hinge[1] + force[1], 0.8 * GRAVITY, delta=1e-4)
         self.assertEqual(state["certainty"][0], ["certain"] * 6)
+        latencies = sorted(self.do("return vmechView.session.latencies"))
+        self.assertGreater(len(latencies), 0)
+        print(f"from the mouse to the picture: {latencies[len(latencies) // 2]:.0f} ms median of "
+              f"{len(latencies)}")
 
     def test_a_limit_stops_it_and_a_hostile_name_runs_nothing(self):
         path = FOLDER / "limited.yaml"
