@@ -48,7 +48,8 @@ std::string FeltReport::Text() const {
   text += fmt::format("  {:<26} {:>9.3g} N RMS from tick to tick, at most {:.3g} N\n", "  noise",
                       noise, largest_change);
   constexpr std::array<const char*, kSafetyStages> kWhy{"soft start", "damped by passivity",
-                                                        "clamped at the largest", "slowed down"};
+                                                        "clamped at the largest", "slowed down",
+                                                        "braked near the speed limit"};
   for (int i = 0; i < kSafetyStages; ++i) {
     if (stages[i] > 0) {
       text += fmt::format("  force changed: {:<22} {}\n", kWhy[i], Share(stages[i], ticks));
