@@ -21,7 +21,8 @@ ArmTorques::ArmTorques(const PostureOptions& options, std::shared_ptr<const ArmD
       posture_(JointArray::Zero()),
       velocity_(period, std::max(resolution, 1e-9)),
       null_space_(arm_.joints()),
-      found_at_(JointArray::Constant(std::numeric_limits<double>::infinity())) {
+      found_at_(JointArray::Constant(std::numeric_limits<double>::infinity())),
+      room_at_(found_at_) {
   options.Validate();
   posture_.head(arm_.joints()) = arm_.description().posture;
   motions_.fill(JointArray::Zero());
@@ -35,14 +36,17 @@ void ArmTorques::Reset() noexcept {
 
 void ArmTorques::Resolve(const MasterState& state, bool fresh,
                          MasterCommand* command) noexcept VMECH_NONBLOCKING {
-  constexpr double kSamePosture = 3e-3;  // [rad], [m]
+  constexpr double kSamePosture = 3e-3, kSameRoom = 0.01;  // [rad], [m]
   const Eigen::Map<const JointArray> q(state.q.data());
   arm_.SetPosture(q.data());
   if (!((q - found_at_).abs().maxCoeff() < kSamePosture)) {
     FindFreeMotions();
+    found_at_ = q;
+  }
+  if (!((q - room_at_).abs().maxCoeff() < kSameRoom)) {
     torque_room_ = arm_.TorqueRoom();
     room_ = arm_.WrenchRoom(torque_room_);
-    found_at_ = q;
+    room_at_ = q;
   }
   if (fresh) {
     posture_torque_ =

@@ -38,7 +38,7 @@ class ArmTorques {
   /// Writes `torque` of the command from its F_Ho_D at measured angles; `fresh` as in TickInput.
   void Resolve(const MasterState& state, bool fresh,
                MasterCommand* command) noexcept VMECH_NONBLOCKING;
-  /// What gravity leaves of the motors for the handle, at the posture of the last Resolve to 3e-3
+  /// What gravity leaves of the motors for the handle, at the posture of the last Resolve to 0.01
   /// rad; no limit before.
   const WrenchLimit& room() const noexcept { return room_; }
 
@@ -52,7 +52,7 @@ class ArmTorques {
   KalmanEstimator<JointArray> velocity_;
   JointArray posture_torque_ = JointArray::Zero(), torque_ = JointArray::Zero();
   HandleNullSpace null_space_;
-  JointArray found_at_;                          // q of the free motions
+  JointArray found_at_, room_at_;                // q of the free motions, and of the room
   JointArray torque_room_ = JointArray::Zero();  // of each motor, beside gravity
   WrenchLimit room_;
   int free_motions_ = 0;

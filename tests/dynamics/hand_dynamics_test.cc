@@ -214,6 +214,7 @@ TEST_P(EveryHeldExample, HandBesideThePathGivesWhatTheMechanismGets) {
     VectorXd there = q;
     MoveCoordinates(held_.tree, t * v, &there);
     dynamics.SetPose(there);
+    EXPECT_TRUE(dynamics.Evaluate(still, still, still));
     return dynamics.Energy();
   };
   constexpr double kStep = 1e-4;
