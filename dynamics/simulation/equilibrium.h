@@ -43,4 +43,8 @@ struct Equilibrium {
 /// @throws as Simulate.
 Equilibrium FindEquilibrium(const Simulation& simulation);
 
+/// The same simulation with its mechanism at that equilibrium, if that is its start.
+/// @throws as Simulate; std::runtime_error where none is found.
+Simulation AtItsStart(Simulation simulation);
+
 }  // namespace vmech

@@ -17,8 +17,9 @@ struct InitialValueProblem {
   double relative_tolerance = 1e-9;
   std::vector<double> absolute_tolerances;  ///< [size]
   double max_step = 0;                      ///< [s]; 0: none
-  /// Of F: which unknowns have slopes in it, and which count in the error test [size].
-  std::vector<bool> differential, tested;
+  // Of F.
+  std::vector<bool> differential;  ///< [size] the others have no slopes, and count in no error test
+  double first_step = 0;           ///< [s]
 };
 
 struct IntegratorCounts {

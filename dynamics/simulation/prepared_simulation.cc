@@ -86,7 +86,9 @@ void FillModel(PreparedSimulation* prepared) {
   model.external = LoadsToFillIn(simulation);
   model.rule = simulation.rule;
   model.no_inertia = NoInertia(model.tree);
-  model.has_passive = HasPassive(simulation.mechanism) || !simulation.motors.empty();
+  const std::vector<Joint>& joints = simulation.mechanism.joints;
+  model.has_passive = HasPassive(simulation.mechanism) || !simulation.motors.empty() ||
+                      std::any_of(joints.begin(), joints.end(), IsLimited);
   for (const int v : model.partition.driven) {
     JointDrive drive;
     for (const TreeNode& node : model.tree.nodes) {

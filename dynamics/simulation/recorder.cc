@@ -1,8 +1,10 @@
 #include "vmech/dynamics/simulation/recorder.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <limits>
 
 #include "vmech/dynamics/loads/load_peaks.h"
 #include "vmech/dynamics/loads/open_components.h"
@@ -58,6 +60,7 @@ void Recorder::Record(double time, double* y) {
   const double closure = equations_.Close(time, y);
   equations_.forces().Remember(equations_.motion());
   equations_.Evaluate(time, y, v);
+  equations_.forces().FindJoints(&equations_.motion());
   const LoadWorkspace<double>& ws = equations_.motion().ws();
   std::copy(ws.v.begin(), ws.v.end(), v);
   result_.times.push_back(time);
@@ -94,9 +97,36 @@ void Recorder::RecordLoads(double time) {
   for (size_t k = 0; k < arrays_->drive_count; ++k) {
     arrays_->drives[pose * arrays_->drive_count + k] = prepared_.simulation.drives[k].law.At(time);
   }
+  const std::vector<Vector3d> beside = equations_.BesideSprings();
+  ws.exerted = beside.data();
+  for (Vector3d& sliding : ws.sliding) sliding.setZero();
   if (EvaluatePoseLoads(equations_.model(), motion, 0, &ws)) {
     StorePoseLoads(equations_.model(), motion, pose, ws, arrays_.get());
+  } else {
+    LeaveOut(pose);
   }
+  ws.exerted = nullptr;
+}
+
+/// At a dead centre of what moves nothing can be said of the wrenches.
+void Recorder::LeaveOut(size_t pose) {
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  const auto leave_out = [&](LoadArrays::Array& values) {
+    const auto count = static_cast<ptrdiff_t>(values.size() / arrays_->pose_count());
+    const auto first = values.begin() + static_cast<ptrdiff_t>(pose) * count;
+    std::fill(first, first + count, none);
+  };
+  for (LoadArrays::Array* values : {&arrays_->wrenches, &arrays_->drive_forces, &arrays_->positions,
+                                    &arrays_->rates, &arrays_->accelerations, &arrays_->powers}) {
+    leave_out(*values);
+  }
+  arrays_->power_errors[pose] = arrays_->power_error_scales[pose] = 0;
+  arrays_->smallest_pivots[pose] = arrays_->closures[pose] = 0;
+  result_.loads.singular_poses.push_back(pose);
+  result_.warnings.push_back(
+      fmt::format("at t = {:.6g} s the loops are singular: the joints' wrenches are not determined "
+                  "there and are left out",
+                  arrays_->times[pose]));
 }
 
 void Recorder::JudgeLoads() {

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "vmech/dynamics/loads/load_arrays.h"
-#include "vmech/dynamics/simulation/equations_of_motion.h"
+#include "vmech/dynamics/simulation/equations/equations_of_motion.h"
 #include "vmech/dynamics/simulation/simulation_result.h"
 
 namespace vmech {
@@ -23,6 +23,7 @@ class Recorder {
  private:
   void RecordEnergies(const double* y);
   void RecordLoads(double time);
+  void LeaveOut(size_t pose);
   void JudgeLoads();
 
   const PreparedSimulation& prepared_;

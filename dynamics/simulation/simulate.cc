@@ -7,7 +7,9 @@
 #include <cmath>
 #include <memory>
 
-#include "vmech/dynamics/simulation/equations_of_motion.h"
+#include "vmech/dynamics/simulation/equations/equations_of_motion.h"
+#include "vmech/dynamics/simulation/equations/index_two.h"
+#include "vmech/dynamics/simulation/equilibrium.h"
 #include "vmech/dynamics/simulation/integrator.h"
 #include "vmech/dynamics/simulation/prepared_simulation.h"
 #include "vmech/dynamics/simulation/recorder.h"
@@ -55,6 +57,11 @@ class Run {
     problem_.absolute_tolerances =
         AbsoluteTolerances(equations_.tree(), options.absolute_tolerance);
     problem_.max_step = options.max_step;
+    // What happens and is undone within a step is not seen.
+    constexpr double kLooks = 200;
+    if (problem_.max_step == 0 && !equations_.contacts().empty()) {
+      problem_.max_step = (end() - simulation_.times.front()) / kLooks;
+    }
   }
 
   void Go() {
@@ -62,6 +69,7 @@ class Run {
     FindStart();
     statistics_.method = options_.method == SimulationMethod::kAutomatic ? SimulationMethod::kAdams
                                                                          : options_.method;
+    if (statistics_.method == SimulationMethod::kIdas) PoseIndexTwo();
     integrator_ = MakeIntegrator(problem_, statistics_.method);
     Restart();
     RecordUntil(time_);
@@ -76,16 +84,35 @@ class Run {
   double end() const { return simulation_.times.back(); }
 
   void FindStart() {
-    time_ = simulation_.times.front();
+    time_ = last_look_ = simulation_.times.front();
     const StartState start = FindStartState(prepared_, &equations_);
     result_.moved_rates = start.moved_rates;
     const KinematicTree& tree = equations_.tree();
     y_.head(tree.nq) = start.q;
     y_.segment(tree.nq, tree.nv) = start.v;
+    const Contacts before = equations_.contacts();
+    FindContacts();
+    before.Compare(equations_.contacts(), time_, equations_.motion(), &result_.events);
+    LookAround();
+  }
+
+  /// The problem for IDAS. Its unknowns begin with those of the other methods.
+  void PoseIndexTwo() {
+    constexpr double kFirstStep = 1e-5, kDoesNotCount = 1e30;
+    index_two_ = std::make_unique<IndexTwo>(prepared_, &equations_);
+    problem_.size = index_two_->size();
+    problem_.evaluate = [this](double t, const double* y, const double* slopes, double* F) {
+      return index_two_->Residual(t, y, slopes, F);
+    };
+    problem_.absolute_tolerances.resize(static_cast<size_t>(problem_.size), kDoesNotCount);
+    problem_.differential = index_two_->Differential();
+    problem_.first_step = kFirstStep * (end() - time_);
+    dense_ = VectorXd::Zero(problem_.size);
   }
 
   void Restart() {
-    integrator_->Restart(time_, y_.data(), nullptr);
+    if (index_two_) index_two_->Start(time_, &y_, &slopes_);
+    integrator_->Restart(time_, y_.data(), slopes_.data());
     ++statistics_.restarts;
   }
 
@@ -115,21 +142,255 @@ class Run {
   }
 
   void TakeStep() {
+    const double from = time_;
     if (!integrator_->Step(end())) {
-      Stop(SimulationStatus::kFailed, DescribeFailure());
+      const std::string why = integrator_->error();
+      if (!TryAgain()) Stop(SimulationStatus::kFailed, DescribeFailure(why));
       return;
     }
-    time_ = integrator_->time();
-    std::copy(integrator_->y(), integrator_->y() + y_.size(), y_.data());
+    const bool event = GoTo(FirstEvent(from, integrator_->time()), from);
     RecordUntil(time_);
-    ReturnToLoops();
-    ChangeMethodIfStiff();
+    if (event) {
+      PassEvent();
+    } else {
+      ReturnToLoops();
+      if (!NearSingularPose(time_ - from)) {
+        ChangeMethodIfStiff();
+      } else if (!index_two_) {
+        LeapOverSingularPose();
+      }
+    }
+    LookAround();
   }
 
-  std::string DescribeFailure() const {
-    return integrator_->error() +
-           ": the mechanism cannot be followed on (it locks, or moves beyond "
-           "all bounds)";
+  /// To `time` or to the first watch that ends the run. Is it at an event?
+  bool GoTo(double time, double from) {
+    const bool ends = PassWatches(from, &time);
+    const bool event = !ends && time < integrator_->time();
+    time_ = time;
+    integrator_->At(time, y_.data());
+    return event || (!ends && IsEvent(time));
+  }
+
+  // What happens at once.
+
+  void PlaceAt(double time, double* y) {
+    if (y == dense_.data()) integrator_->At(time, y);
+    equations_.Place(time, y, y + equations_.tree().nq);
+  }
+
+  /// Is the state at a time within the last step beyond an event?
+  bool IsEvent(double time) {
+    Contacts& contacts = equations_.contacts();
+    if (contacts.empty()) return false;
+    PlaceAt(time, dense_.data());
+    if (contacts.ComesToRest(equations_.motion())) return true;
+    if (contacts.PassesLimit(equations_.motion())) return true;
+    if (!contacts.any_held()) return false;
+    equations_.Evaluate(time, dense_.data(), dense_.data() + equations_.tree().nq);
+    return contacts.Releases(equations_.motion(), equations_.drives());
+  }
+
+  /// The first time in (from, to] that is beyond an event; `to` if none is.
+  double FirstEvent(double from, double to) {
+    if (equations_.contacts().empty() || !IsEvent(to)) return to;
+    return Bisect(from, to, [this](double time) { return IsEvent(time); });
+  }
+
+  /// The end of the narrowest interval at whose end, but not at whose beginning, `beyond` holds.
+  template <typename Beyond>
+  static double Bisect(double from, double to, const Beyond& beyond) {
+    constexpr double kRounding = 1e-15;
+    while (to - from > kRounding * std::max(std::abs(from), std::abs(to))) {
+      const double middle = from + 0.5 * (to - from);
+      if (middle <= from || middle >= to) break;
+      (beyond(middle) ? to : from) = middle;
+    }
+    return to;
+  }
+
+  double Watched(const CoordinateWatch& watch, double time) {
+    PlaceAt(time, dense_.data());
+    return equations_.motion().ws().loads[watch.at.joint].position[watch.at.freedom] - watch.value;
+  }
+
+  /// Enters watches that are reached in (from, *to]. Where one of them ends the run, *to is there.
+  bool PassWatches(double from, double* to) {
+    bool ends = false;
+    for (size_t i = 0; i < simulation_.watches.size(); ++i) {
+      const CoordinateWatch& watch = simulation_.watches[i];
+      const double before = watched_[i];
+      const auto beyond = [&](double time) { return before * Watched(watch, time) <= 0; };
+      if (before == 0 || !beyond(*to)) continue;
+      const double time = Bisect(from, *to, beyond);
+      beyond(time);
+      const JointLoad<double>& joint = equations_.motion().ws().loads[watch.at.joint];
+      result_.events.push_back({time, SimulationEvent::Kind::kReached, watch.at, watch.value,
+                                joint.rate[watch.at.freedom]});
+      if (!watch.ends_run) continue;
+      ends = true;
+      *to = time;
+    }
+    if (!ends) return false;
+    result_.status = SimulationStatus::kReached;
+    result_.message = fmt::format("a coordinate that ends the run is reached at t = {:.6g} s", *to);
+    return true;
+  }
+
+  /// From here the next step is looked at.
+  void LookAround() {
+    if (equations_.contacts().empty() && simulation_.watches.empty()) return;
+    PlaceAt(time_, y_.data());
+    equations_.forces().Remember(equations_.motion());
+    equations_.contacts().Watch(equations_.motion());
+    watched_.clear();
+    for (const CoordinateWatch& watch : simulation_.watches) {
+      const JointLoad<double>& joint = equations_.motion().ws().loads[watch.at.joint];
+      watched_.push_back(joint.position[watch.at.freedom] - watch.value);
+    }
+  }
+
+  void PassEvent() {
+    equations_.Close(time_, y_.data());
+    PlaceAt(time_, y_.data());
+    const Contacts before = equations_.contacts();
+    const std::vector<Contacts::Hit> hits = before.FindHits(equations_.motion());
+    if (!hits.empty()) Rebound(hits);
+    FindContacts();
+    before.Compare(equations_.contacts(), time_, equations_.motion(), &result_.events);
+    Restart();
+  }
+
+  /// What rests from here on, and what slips or opens at once.
+  void FindContacts() {
+    if (equations_.contacts().empty()) return;
+    PlaceAt(time_, y_.data());
+    equations_.contacts().HoldAllAtRest(equations_.motion());
+    do {
+      equations_.HoldContacts();
+      PlaceAt(time_, y_.data());
+      equations_.Evaluate(time_, y_.data(), y_.data() + equations_.tree().nq);
+    } while (equations_.contacts().Release(equations_.motion(), equations_.drives()));
+    TakeRates();
+  }
+
+  void TakeRates() {
+    y_.segment(equations_.tree().nq, equations_.tree().nv) = equations_.motion().ws().v;
+  }
+
+  void Rebound(std::vector<Contacts::Hit> hits) {
+    const double before = equations_.KineticEnergyHere();
+    const VectorXd v = equations_.motion().ws().v;
+    std::vector<SimulationEvent> rebounds;
+    for (const Contacts::Hit& hit : hits) {
+      const FreedomId at = equations_.contacts().FreedomOf(hit);
+      const JointLoad<double>& joint = equations_.motion().ws().loads[at.joint];
+      rebounds.push_back({time_, SimulationEvent::Kind::kRebound, at, joint.position[at.freedom],
+                          joint.rate[at.freedom]});
+    }
+    equations_.contacts().ReleaseFriction();
+    equations_.Impact(time_, y_.data(), v.data(), hits);
+    TakeRates();
+    if (LetRest(&hits)) {
+      equations_.Impact(time_, y_.data(), v.data(), hits);
+      TakeRates();
+    }
+    for (size_t i = 0; i < hits.size(); ++i) {
+      if (hits[i].rate != 0) result_.events.push_back(rebounds[i]);
+    }
+    equations_.HoldContacts();
+    PlaceAt(time_, y_.data());
+    y_[equations_.size() - 1] += before - equations_.KineticEnergyHere();
+  }
+
+  /// Freedoms that would be back at their limit within a microsecond stay there. True if any.
+  bool LetRest(std::vector<Contacts::Hit>* hits) {
+    constexpr double kFlight = 1e-6;  // [s]
+    equations_.HoldContacts();
+    equations_.Evaluate(time_, y_.data(), y_.data() + equations_.tree().nq);
+    bool rests = false;
+    for (Contacts::Hit& hit : *hits) {
+      const double pressing = hit.pressing * equations_.motion().SlopeOf(hit.row);
+      if (hit.rate == 0 || !(2 * std::abs(hit.rate) < kFlight * pressing)) continue;
+      hit.rate = 0;
+      rests = true;
+    }
+    return rests;
+  }
+
+  static std::string DescribeFailure(const std::string& why) {
+    return why + ": the mechanism cannot be followed on (it locks, or moves beyond all bounds)";
+  }
+
+  /// After a step that has failed: over a singular pose, or with equations chosen anew.
+  bool TryAgain() {
+    if (failed_at_ == time_) return false;
+    failed_at_ = time_;
+    if (index_two_) return BringBack(), true;
+    return LeapOverSingularPose();
+  }
+
+  /// Is it next to a singular pose, or does it creep up to one? Its distance is the root of the
+  /// pivot.
+  bool NearSingularPose(double step) {
+    constexpr double kNextTo = 1e-7, kInReach = 1e-6, kCreeps = 0.1;
+    if (equations_.tree().loops.empty()) return false;
+    const double pivot = equations_.motion().smallest_pivot();
+    const double moved = step * equations_.motion().ws().v.cwiseAbs().maxCoeff();
+    return pivot < kNextTo || (pivot < kInReach && moved < kCreeps * std::sqrt(pivot));
+  }
+
+  /// Near a singular pose loops leave little more than rounding of how they bend there, and small
+  /// steps do not lead over it: one of Adams and Bashforth does, of a fraction of a millisecond, by
+  /// slopes behind it.
+  bool LeapOverSingularPose() {
+    constexpr double kShortest = 1e-6, kLongest = 4e-3;  // [rad]
+    VectorXd slopes[4];
+    if (!FindSlopes(time_, y_, &slopes[0])) return false;
+    const double pivot = equations_.motion().smallest_pivot();
+    const double speed = std::max(equations_.motion().ws().v.cwiseAbs().maxCoeff(), 1e-9);
+    for (double step = kShortest / speed; step < kLongest / speed; step *= 2) {
+      VectorXd behind = y_, there;
+      for (int k = 1; k < 4; ++k) {
+        if (!StepBack(time_ - k * step, step, slopes[k - 1], &behind)) return false;
+        if (!FindSlopes(time_ - k * step, behind, &slopes[k])) return false;
+      }
+      behind = y_ + step / 24 * (55 * slopes[0] - 59 * slopes[1] + 37 * slopes[2] - 9 * slopes[3]);
+      if (time_ + step > end() || !FindSlopes(time_ + step, behind, &there)) continue;
+      if (equations_.motion().smallest_pivot() < pivot) continue;
+      if (step == kShortest / speed) return false;  // it moves away from it
+      y_ = behind;
+      time_ += step;
+      BringBack();
+      return true;
+    }
+    return false;
+  }
+
+  bool FindSlopes(double time, const VectorXd& y, VectorXd* slopes) {
+    slopes->resize(y.size());
+    return equations_.Slopes(time, y.data(), slopes->data());
+  }
+
+  /// By the fourth-order rule of Runge and Kutta, to `time` from a step later.
+  bool StepBack(double time, double step, const VectorXd& k1, VectorXd* y) {
+    VectorXd k2, k3, k4;
+    const double middle = time + 0.5 * step;
+    const bool found = FindSlopes(middle, *y - 0.5 * step * k1, &k2) &&
+                       FindSlopes(middle, *y - 0.5 * step * k2, &k3) &&
+                       FindSlopes(time, *y - step * k3, &k4);
+    if (found) *y -= step / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+    return found;
+  }
+
+  /// Onto the loops, and on from there.
+  void BringBack() {
+    equations_.Close(time_, y_.data());
+    PlaceAt(time_, y_.data());
+    TakeRates();
+    ++statistics_.projections;
+    Restart();
+    RecordUntil(time_);
   }
 
   /// Results that are due by then.
@@ -142,7 +403,20 @@ class Run {
         integrator_->At(at, dense_.data());
       }
       recorder_.Record(at, dense_.data());
+      RefuseUnresisted();
     }
+  }
+
+  /// A force along a freedom without inertia has no answer.
+  void RefuseUnresisted() {
+    constexpr double kRounding = 1e-7;
+    const ConstrainedMotion& motion = equations_.motion();
+    const double largest = motion.ws().tau.cwiseAbs().maxCoeff();
+    if (motion.unresisted() <= kRounding * largest) return;
+    Stop(SimulationStatus::kFailed,
+         fmt::format("{:.4g} N or N m act along a freedom without inertia, and nothing resists "
+                     "them; give its link mass properties, or leave the load out",
+                     motion.unresisted()));
   }
 
   void RecordHere() {
@@ -157,32 +431,57 @@ class Run {
     equations_.Place(time_, y_.data(), y_.data() + tree.nq);
     const double drift = equations_.motion().closure();
     statistics_.largest_drift = std::max(statistics_.largest_drift, drift);
+    statistics_.largest_rate_drift =
+        std::max(statistics_.largest_rate_drift, equations_.RateDrift(y_.data() + tree.nq));
     if (equations_.ChoosesBadly()) equations_.ChooseFreedoms(y_.head(tree.nq));
-    if (drift <= options_.drift_tolerance) return;
-    equations_.Close(time_, y_.data());
-    equations_.Place(time_, y_.data(), y_.data() + tree.nq);
-    y_.segment(tree.nq, tree.nv) = equations_.motion().ws().v;
-    ++statistics_.projections;
-    Restart();
+    const bool worn = index_two_ && index_two_->ChoosesBadly(time_, y_.data());
+    if (drift <= options_.drift_tolerance && !worn) return;
+    BringBack();
   }
 
-  /// Fixed-point iterations that fail to converge are those of a stiff mechanism.
+  /// Adams takes steps that are short for what decays fastest, though it has long decayed: BDF does
+  /// not. Looked at ever more seldom.
   void ChangeMethodIfStiff() {
-    constexpr long kWindow = 50, kFailures = 10;
+    constexpr double kShort = 0.3;
     if (options_.method != SimulationMethod::kAutomatic ||
         statistics_.method != SimulationMethod::kAdams) {
       return;
     }
-    const IntegratorCounts counts = integrator_->counts();
-    if (counts.steps < window_.steps + kWindow) return;
-    const bool stiff = counts.nonlinear_failures - window_.nonlinear_failures > kFailures;
-    window_ = counts;
-    if (!stiff) return;
+    const long steps = integrator_->counts().steps;
+    if (steps < next_look_) return;
+    const double step = (time_ - last_look_) / static_cast<double>(steps - looked_at_);
+    last_look_ = time_;
+    looked_at_ = steps;
+    next_look_ = 2 * steps;
+    if (FastestDecay() * step < kShort) return;
     CountUp();
     statistics_.method = SimulationMethod::kBdf;
     result_.events.push_back({time_, SimulationEvent::Kind::kMethodChanged, {}, 0, 0});
     integrator_ = MakeIntegrator(problem_, statistics_.method);
     Restart();
+  }
+
+  /// The largest eigenvalue of df/dy, by a power iteration, if it is real and negative: its size
+  /// [1/s]; else 0.
+  double FastestDecay() {
+    constexpr int kIterations = 20;
+    constexpr double kMove = 1e-7, kNearlyReal = 0.2;
+    const Eigen::Index moving = y_.size() - 2;  // energies do not act on anything
+    VectorXd here(y_.size()), there(y_.size()), moved = y_;
+    if (!equations_.Slopes(time_, y_.data(), here.data())) return 0;
+    VectorXd d = here.head(moving);
+    double rate = 0;
+    for (int i = 0; i < kIterations && d.norm() > 0; ++i) {
+      d.normalize();
+      moved.head(moving) = y_.head(moving) + kMove * d;
+      if (!equations_.Slopes(time_, moved.data(), there.data())) return 0;
+      const VectorXd Jd = (there - here).head(moving) / kMove;
+      rate = d.dot(Jd);
+      const bool real = (Jd - rate * d).norm() < kNearlyReal * std::abs(rate);
+      if (!real) rate = 0;
+      d = Jd;
+    }
+    return std::max(0.0, -rate);
   }
 
   /// The integrator's counts into the statistics.
@@ -208,16 +507,20 @@ class Run {
   InitialValueProblem problem_;
   std::unique_ptr<Integrator> integrator_;
   double time_ = 0;
-  VectorXd y_, dense_;
-  size_t next_ = 0;  ///< of the times
-  IntegratorCounts window_;
+  std::unique_ptr<IndexTwo> index_two_;
+  VectorXd y_, dense_, slopes_;
+  size_t next_ = 0;                       ///< of the times
+  long next_look_ = 100, looked_at_ = 0;  ///< steps at which stiffness is, and was, looked at
+  double failed_at_ = -1;                 ///< when a step failed last [s]
+  double last_look_ = 0;                  ///< when [s]
+  std::vector<double> watched_;           ///< of each watch, how far it was at the last step
 };
 
 }  // namespace
 
 SimulationResult Simulate(const Simulation& simulation, const SimulationOptions& options) {
   options.Validate();
-  const PreparedSimulation prepared = PrepareSimulation(simulation);
+  const PreparedSimulation prepared = PrepareSimulation(AtItsStart(simulation));
   SimulationResult result;
   result.tree = prepared.model.tree;
   result.notes = prepared.notes;

@@ -159,7 +159,6 @@ void SimulationOptions::Validate() const {
   CheckRange("SimulationOptions", "drift_tolerance", drift_tolerance, 1e-13, 1e-3);
   CheckRange("SimulationOptions", "max_step", max_step, 0, 1e12);
   CheckRange("SimulationOptions", "max_steps", static_cast<double>(max_steps), 1, 1e15);
-  CheckRange("SimulationOptions", "threads", threads, 1, 64);
 }
 
 }  // namespace vmech

@@ -150,7 +150,6 @@ struct SimulationOptions {
   long max_steps = 10'000'000;  ///< of the integrator, > 0
   bool loads = true;            ///< whether the joints' wrenches are wanted
   bool link_motions = true;     ///< whether PoseLoads::links is wanted
-  int threads = 1;              ///< for the wrenches, 1..64; the result does not depend on it
   /// Called now and then with the time that has been reached [s]; false stops the run, which keeps
   /// all that it has computed.
   std::function<bool(double time)> progress;

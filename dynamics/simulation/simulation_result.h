@@ -58,9 +58,9 @@ std::string_view NameOf(SimulationEvent::Kind kind);
 struct EnergySample {
   double kinetic = 0;
   double weight = 0;   ///< zero with all centres of gravity at the height of the reference point
-  double springs = 0;  ///< of joints and of the hand's coupling
-  double supplied =
-      0;  ///< by drives, motors, external wrenches and the hand's motion, since the start
+  double springs = 0;  ///< of joints
+  /// By drives, motors, external wrenches and the hand's coupling, since the start.
+  double supplied = 0;
   double dissipated = 0;  ///< by dampers, dry friction and impacts, since the start
   double Total() const { return kinetic + weight + springs; }
   /// Total less what it was at the start, less what was supplied, plus what was dissipated.

@@ -82,7 +82,6 @@ StartState FindStartState(const PreparedSimulation& prepared, EquationsOfMotion*
   }
   equations->Place(time, start.q.data(), start.v.data());
   start.v = motion.ws().v;
-  JointRates(tree, motion.ws().tree, motion.ws().v.data(), &motion.ws().loads);
   start.moved_rates = FindMoved(prepared, motion.ws());
   return start;
 }

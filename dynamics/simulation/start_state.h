@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "vmech/dynamics/simulation/equations_of_motion.h"
+#include "vmech/dynamics/simulation/equations/equations_of_motion.h"
 #include "vmech/dynamics/simulation/simulation_result.h"
 
 namespace vmech {

@@ -5,7 +5,7 @@
 #include "vmech/dynamics/in_hand/virtual_coupling.h"
 #include "vmech/dynamics/loads/pose/load_model.h"
 #include "vmech/dynamics/loads/pose/study_motion.h"
-#include "vmech/dynamics/simulation/constrained_motion.h"
+#include "vmech/dynamics/simulation/equations/constrained_motion.h"
 #include "vmech/dynamics/simulation/simulation.h"
 
 namespace vmech {
@@ -25,26 +25,31 @@ class ActingForces {
   /// The same from another one's.
   void ContinueFrom(const ActingForces& other) { cut_positions_ = other.cut_positions_; }
 
-  /// Writes ws().passive and ws().applied of `motion`, which has pose and velocities: all but dry
-  /// friction, which follows ws().sliding and the wrenches of ws().loads.
+  /// Positions and rates of all joints into ws().loads of `motion`, which has pose and velocities.
+  void FindJoints(ConstrainedMotion* motion);
+  /// Finds what motors, external loads and the hand do there. Needs FindJoints.
   void Evaluate(double time, ConstrainedMotion* motion);
+  /// Writes ws().passive and ws().applied: of these, of springs and dampers, and of dry friction by
+  /// ws().sliding and the wrenches of ws().loads.
+  void Apply(ConstrainedMotion* motion) const;
+  /// [joints] what Apply has exerted along the joints' freedoms beside their springs and dampers.
+  std::vector<Vector3d> BesideSprings(const ConstrainedMotion& motion) const;
 
   // Of the last Evaluate.
   double MotorForce(size_t motor) const { return motor_forces_[motor]; }
   Wrenchd hand() const;  ///< on the mechanism at Go, world axes
+  /// [joints] what motors exert along the joints' freedoms.
+  const std::vector<Vector3d>& motors() const { return exerted_; }
   /// Power of motors, external wrenches and the hand; that is lost in dampers and friction [W].
   double SuppliedPower(const ConstrainedMotion& motion) const;
   double LostPower(const ConstrainedMotion& motion) const;
   /// Energy of the joints' springs [J].
   double SpringEnergy(const ConstrainedMotion& motion) const;
-  /// [joints] what motors exert along the joints' freedoms.
-  const std::vector<Vector3d>& motors() const { return exerted_; }
 
   /// One pose as a load study knows it, for EvaluatePoseLoads.
   Motion PoseOf(double time, const ConstrainedMotion& motion) const;
 
  private:
-  void FindJoints(ConstrainedMotion* motion);
   void ApplyExternal(double time, ConstrainedMotion* motion);
   void ApplyHand(double time, const ConstrainedMotion& motion);
   void RunMotors(double time, const ConstrainedMotion& motion);
@@ -57,6 +62,7 @@ class ActingForces {
   std::vector<Vector3d> exerted_;          ///< [joints]
   std::vector<double> motor_forces_;
   std::vector<Vector3d> cut_positions_;  ///< [loops] to continue from
+  std::vector<Vector3d> here_;           ///< [loops] of the last FindJoints
   Motion none_;                          ///< that of constant loads
 };
 

@@ -48,6 +48,8 @@ class ConstrainedMotion {
   /// Takes v [nv] as far as loops and held rows allow: the nearest velocities in the metric of M.
   /// `rates`: of the held rows; null: zero.
   void SetVelocities(const double* v, const double* rates) noexcept;
+  /// Takes v [nv] as they are.
+  void TakeVelocities(const double* v) noexcept;
   /// Accelerations under forces [nv] along the freedoms and ws().applied on the nodes. `slopes`: of
   /// the held rates; null: zero. Writes ws().vdot, and A of the nodes.
   void Accelerate(const VectorXd& forces, const double* slopes) noexcept;
@@ -60,24 +62,27 @@ class ConstrainedMotion {
   /// the held rows alone. Leaves the pose set. Returns what is left.
   double Close(double tolerance, double* q) noexcept;
 
-  /// N' x and M v at the pose that is set.
-  void AlongFreeMotions(const VectorXd& x, VectorXd* along) const noexcept;
   int freedoms() const noexcept { return static_cast<int>(free_.size()); }
   const MatrixXd& N() const noexcept { return N_; }
-  const MatrixXd& inertia() const noexcept { return A_; }  ///< N'M N [freedoms, freedoms]
-  const MatrixXd& held_motions() const noexcept { return B_; }
+  const MatrixXd& inertia() const noexcept { return A_; }       ///< N'M N [freedoms, freedoms]
+  const MatrixXd& held_motions() const noexcept { return B_; }  ///< B [held, freedoms]
+  // Of the last Accelerate: N'(forces - h - M a) [freedoms], and what B s' is to be [held].
+  const VectorXd& driving() const noexcept { return driving_; }
+  const VectorXd& held_slopes() const noexcept { return held_; }
+  /// The slope of a rate there.
+  double SlopeOf(const RateRow& row) const noexcept;
 
   /// q, v, v', tree, inertias: as the functions above leave them.
   LoadWorkspace<double>& ws() noexcept { return ws_; }
   const LoadWorkspace<double>& ws() const noexcept { return ws_; }
 
  private:
+  void FindVelocityTerms() noexcept;
   void FindInertia() noexcept;
   void FindMovingLinks(int k) noexcept;
   void FactorInertia() noexcept;
   void FactorHeld() noexcept;
   void SolveFree(VectorXd* s) noexcept;
-  double SlopeOf(const RateRow& row) const noexcept;
 
   const LoadModel& model_;
   const KinematicTree& tree_;
@@ -90,7 +95,7 @@ class ConstrainedMotion {
   std::vector<RateRow> rows_;
   MatrixXd B_, Y_;                     ///< Y = A^-1 B'
   EnvelopeLdlt<double> held_factors_;  ///< of B A^-1 B'
-  VectorXd right_, s_, held_, multipliers_, weight_, step_, reversed_, momenta_;
+  VectorXd driving_, right_, s_, held_, multipliers_, weight_, step_, reversed_, momenta_;
   double unresisted_ = 0;
 };
 

@@ -1,4 +1,4 @@
-#include "vmech/dynamics/simulation/constrained_motion.h"
+#include "vmech/dynamics/simulation/equations/constrained_motion.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -65,7 +65,7 @@ ConstrainedMotion::ConstrainedMotion(const LoadModel& model)
   MN_ = MatrixXd::Zero(nv, f);
   A_ = MatrixXd::Zero(f, f);
   inertia_factors_ = EnvelopeLdlt<double>(open ? InertiaEnvelope(tree_) : std::vector<int>(f));
-  right_ = s_ = reversed_ = VectorXd::Zero(f);
+  driving_ = right_ = s_ = reversed_ = VectorXd::Zero(f);
   step_ = momenta_ = VectorXd::Zero(nv);
   Hold({});
 }
@@ -184,6 +184,15 @@ void ConstrainedMotion::SetVelocities(const double* v, const double* rates) noex
   for (Eigen::Index i = 0; i < held_.size(); ++i) held_[i] = rates ? rates[i] : 0;
   SolveFree(&s_);
   ws_.v.noalias() = N_ * s_;
+  FindVelocityTerms();
+}
+
+void ConstrainedMotion::TakeVelocities(const double* v) noexcept {
+  std::copy(v, v + tree_.nv, ws_.v.data());
+  FindVelocityTerms();
+}
+
+void ConstrainedMotion::FindVelocityTerms() noexcept {
   ForwardVelocities(tree_, ws_.v.data(), &ws_.tree);
   VelocityProducts(tree_, &ws_.tree);
   LoopAccelerationBias(tree_, &ws_.tree);
@@ -201,7 +210,8 @@ void ConstrainedMotion::Accelerate(const VectorXd& forces, const double* slopes)
   ForwardAccelerations(tree_, ws_.vdot.data(), &ws_.tree);
   NewtonEuler(tree_, ws_.inertias, ws_.applied.data(), &ws_.tree, ws_.tau.data());
   step_ = forces - ws_.tau;
-  right_.noalias() = N_.transpose() * step_;
+  driving_.noalias() = N_.transpose() * step_;
+  right_ = driving_;
   for (size_t i = 0; i < rows_.size(); ++i) {
     held_[static_cast<int>(i)] = (slopes ? slopes[i] : 0) - SlopeOf(rows_[i]);
   }
@@ -230,10 +240,6 @@ double ConstrainedMotion::Close(double tolerance, double* q) noexcept {
     error = closure();
   }
   return error;
-}
-
-void ConstrainedMotion::AlongFreeMotions(const VectorXd& x, VectorXd* along) const noexcept {
-  along->noalias() = N_.transpose() * x;
 }
 
 void NormaliseQuaternions(const KinematicTree& tree, double* q) noexcept {

@@ -1,4 +1,4 @@
-#include "vmech/dynamics/simulation/acting_forces.h"
+#include "vmech/dynamics/simulation/equations/acting_forces.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +8,7 @@
 #include "vmech/dynamics/loads/pose/external_loads.h"
 #include "vmech/dynamics/loads/pose/passive_loads.h"
 #include "vmech/dynamics/loads/pose/pose_loads.h"
+#include "vmech/dynamics/rigid_body/passive.h"
 #include "vmech/kinematics/loops/cut_joint.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
 #include "vmech/kinematics/tree/grasp_frame.h"
@@ -70,8 +71,10 @@ void ActingForces::FindJoints(ConstrainedMotion* motion) {
   LoadWorkspace<double>& ws = motion->ws();
   TreeJointPositions(model_.tree, ws.q.data(), &ws.loads);
   JointRates(model_.tree, ws.tree, ws.v.data(), &ws.loads);
-  for (size_t l = 0; l < cut_positions_.size(); ++l) {
-    ws.loads[model_.tree.loops[l].joint].position = cut_positions_[l];
+  here_ = cut_positions_;
+  ContinueCutPositions(model_.tree, ws.tree, &here_);
+  for (size_t l = 0; l < here_.size(); ++l) {
+    ws.loads[model_.tree.loops[l].joint].position = here_[l];
   }
 }
 
@@ -120,16 +123,30 @@ void ActingForces::RunMotors(double time, const ConstrainedMotion& motion) {
 }
 
 void ActingForces::Evaluate(double time, ConstrainedMotion* motion) {
-  LoadWorkspace<double>& ws = motion->ws();
-  const bool over_coordinate = simulation_.table_coordinate.has_value();
-  if (model_.has_passive || over_coordinate) FindJoints(motion);
   if (!model_.external.empty()) ApplyExternal(time, motion);
+  RunMotors(time, *motion);
+}
+
+void ActingForces::Apply(ConstrainedMotion* motion) const {
+  LoadWorkspace<double>& ws = motion->ws();
   if (model_.has_passive) {
-    RunMotors(time, *motion);
     ws.exerted = exerted_.data();
     PassiveForces(model_, &ws);
   }
   GatherApplied(model_, &ws);
+}
+
+std::vector<Vector3d> ActingForces::BesideSprings(const ConstrainedMotion& motion) const {
+  std::vector<Vector3d> beside(exerted_.size(), Vector3d::Zero());
+  for (size_t j = 0; model_.has_passive && j < beside.size(); ++j) {
+    const std::vector<Passive>& passive = model_.tree.mechanism.joints[j].passive;
+    const JointLoad<double>& load = motion.ws().loads[j];
+    beside[j] = motion.ws().along[j];
+    for (int k = 0; k < static_cast<int>(passive.size()); ++k) {
+      beside[j][k] -= SpringForce(passive[k], load.position[k], load.rate[k]);
+    }
+  }
+  return beside;
 }
 
 Wrenchd ActingForces::hand() const {

@@ -3,8 +3,10 @@
 #include <memory>
 #include <vector>
 
-#include "vmech/dynamics/simulation/acting_forces.h"
-#include "vmech/dynamics/simulation/constrained_motion.h"
+#include "vmech/dynamics/loads/pose/friction_iteration.h"
+#include "vmech/dynamics/simulation/equations/acting_forces.h"
+#include "vmech/dynamics/simulation/equations/constrained_motion.h"
+#include "vmech/dynamics/simulation/equations/contacts.h"
 #include "vmech/dynamics/simulation/prepared_simulation.h"
 
 namespace vmech {
@@ -26,12 +28,22 @@ class EquationsOfMotion {
   /// pose on inertia decides what they do not, until the first that is not.
   bool Slopes(double time, const double* y, double* slopes);
 
-  /// Everything at a state: pose, rates, forces, accelerations; see motion() and forces().
-  void Evaluate(double time, const double* q, const double* v);
-  /// The same without forces and accelerations. Steps go on from there.
+  /// Everything at a state: pose, rates, forces, accelerations; see motion() and forces(). False if
+  /// friction under load has no equilibrium there: the mechanism locks.
+  bool Evaluate(double time, const double* q, const double* v);
+  /// Takes coordinates, rates and slopes of rates as they are, on the loops or not: forces in
+  /// ws().passive, what the motion asks for in ws().tau.
+  void TakeState(double time, const double* q, const double* v, const double* vdot);
+  /// Pose, rates, and both of all joints. Steps go on from there.
   void Place(double time, const double* q, const double* v);
+  /// Rates after an impact, in ws().v: held contacts stay, and those that hit are left.
+  void Impact(double time, const double* q, const double* v,
+              const std::vector<Contacts::Hit>& hits);
   /// Closes the loops of q, with the drives where their laws have them. Returns what is left.
   double Close(double time, double* q);
+
+  /// The largest rate at which v [nv] opens loops at the pose, dimensionless [1/s].
+  double RateDrift(const double* v) const;
 
   /// Independent freedoms as they are best at q. False if they are no better than those that there
   /// are.
@@ -42,8 +54,14 @@ class EquationsOfMotion {
   const KinematicTree& tree() const { return tree_; }
   ConstrainedMotion& motion() { return now_->motion; }
   ActingForces& forces() { return now_->forces; }
+  Contacts& contacts() { return contacts_; }
+  const Contacts& contacts() const { return contacts_; }
+  /// Holds what the contacts hold from now on.
+  void HoldContacts();
+  int drives() const { return static_cast<int>(driven_.size()); }
+  /// [joints] along the joints' freedoms beside springs and dampers: motors, friction, limits.
+  std::vector<Vector3d> BesideSprings() const;
   const LoadModel& model() const { return now_->model; }
-  double Energy() const;  ///< kinetic, weight, springs [J]
   double KineticEnergyHere() const;
   double WeightEnergyHere() const;
 
@@ -61,17 +79,25 @@ class EquationsOfMotion {
 
   std::unique_ptr<Choice> MakeChoice(const VectorXd& q, double tolerance) const;
   void FindDriveMotion(double time);
+  std::vector<RateRow> HeldRows() const;
+  bool AccelerateUnderLoad();
   void SetPose(const double* q);
   void CloseIfNearlySingular();
 
   const PreparedSimulation& prepared_;
   const KinematicTree& tree_;
   std::vector<int> driven_;
+  Contacts contacts_;
+  FrictionIteration friction_;
+  std::vector<Vector3d> held_along_;  ///< [joints] while friction under load settles
+  bool under_load_ = false;           ///< any friction depends on loads
   std::unique_ptr<Choice> regular_, singular_;
   std::vector<double> closed_;  ///< [nq] where loops were closed before anything else
   Choice* now_ = nullptr;       ///< the one of these that the last pose is known by
   std::vector<double> held_rates_, held_slopes_;
-  bool from_singular_ = false;
+  bool from_singular_ = false;    ///< the state that steps go on from is at a singular pose
+  bool avoids_singular_ = false;  ///< evaluations there are not wanted, and
+  bool leads_over_ = false;       ///< this one is such
 };
 
 }  // namespace vmech

@@ -1,10 +1,14 @@
-#include "vmech/dynamics/simulation/equations_of_motion.h"
+#include "vmech/dynamics/simulation/equations/equations_of_motion.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "vmech/dynamics/loads/pose/passive_loads.h"
+#include "vmech/dynamics/loads/pose/pose_loads.h"
 #include "vmech/dynamics/rigid_body/newton_euler.h"
+#include "vmech/dynamics/rigid_body/passive.h"
 #include "vmech/kinematics/loops/dimensionless_loops.h"
+#include "vmech/kinematics/loops/loops.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
 
 namespace vmech {
@@ -13,7 +17,7 @@ namespace {
 /// Pivots are squares of sines. How loops bend is known to rounding over a pivot: nothing is left
 /// of it below the first. Below the second an opening of loops, which counts for more by the
 /// inverse root, is closed before anything else.
-constexpr double kSingular = 1e-10;
+constexpr double kSingular = 1e-8;
 constexpr double kNearlySingular = 1e-2;
 /// Dimensionless pivots at a singular pose that count as zero.
 constexpr double kSingularRank = 1e-4;
@@ -38,15 +42,26 @@ EquationsOfMotion::EquationsOfMotion(const PreparedSimulation& prepared)
     : prepared_(prepared),
       tree_(prepared.model.tree),
       driven_(DrivenVelocities(prepared.simulation, tree_)),
+      contacts_(prepared.simulation, tree_),
+      under_load_(HasLoadFriction(tree_.mechanism)),
       regular_(std::make_unique<Choice>(prepared, prepared.model.partition)),
-      now_(regular_.get()),
-      held_rates_(driven_.size()),
-      held_slopes_(driven_.size()) {
-  std::vector<RateRow> rows;
-  for (const int v : driven_) rows.push_back({v, -1, 0});
-  regular_->motion.Hold(rows);
+      now_(regular_.get()) {
+  HoldContacts();
   regular_->motion.SetPose(prepared.mobility.q_general.data());
   regular_->best_pivot = regular_->motion.smallest_pivot();
+}
+
+std::vector<RateRow> EquationsOfMotion::HeldRows() const {
+  std::vector<RateRow> rows;
+  for (const int v : driven_) rows.push_back({v, -1, 0});
+  for (const RateRow& row : contacts_.Held()) rows.push_back(row);
+  return rows;
+}
+
+void EquationsOfMotion::HoldContacts() {
+  regular_->motion.Hold(HeldRows());
+  held_rates_.assign(regular_->motion.held().size(), 0.0);
+  held_slopes_ = held_rates_;
 }
 
 std::unique_ptr<EquationsOfMotion::Choice> EquationsOfMotion::MakeChoice(const VectorXd& q,
@@ -91,9 +106,11 @@ void EquationsOfMotion::FindDriveMotion(double time) {
 void EquationsOfMotion::SetPose(const double* q) {
   now_ = regular_.get();
   now_->motion.SetPose(q);
+  leads_over_ = false;
   if (tree_.loops.empty()) return;
   CloseIfNearlySingular();
-  if (now_->motion.smallest_pivot() >= kSingular) return;
+  leads_over_ = now_->motion.smallest_pivot() < kSingular && avoids_singular_;
+  if (now_->motion.smallest_pivot() >= kSingular || leads_over_) return;
   // More motions are free at this pose: what loops do not decide, inertia does.
   ++singular_poses;
   singular_ = MakeChoice(now_->motion.ws().q, kSingularRank);
@@ -115,21 +132,88 @@ void EquationsOfMotion::Place(double time, const double* q, const double* v) {
   from_singular_ = now_ == singular_.get();
   FindDriveMotion(time);
   now_->motion.SetVelocities(v, held_rates_.data());
+  now_->forces.FindJoints(&now_->motion);
 }
 
-void EquationsOfMotion::Evaluate(double time, const double* q, const double* v) {
+void EquationsOfMotion::TakeState(double time, const double* q, const double* v,
+                                  const double* vdot) {
+  ++evaluations;
+  now_ = regular_.get();
+  ConstrainedMotion& motion = now_->motion;
+  LoadWorkspace<double>& ws = motion.ws();
+  motion.SetPose(q);
+  motion.TakeVelocities(v);
+  now_->forces.FindJoints(&motion);
+  now_->forces.Evaluate(time, &motion);
+  now_->forces.Apply(&motion);
+  std::copy(vdot, vdot + tree_.nv, ws.vdot.data());
+  ForwardAccelerations(tree_, ws.vdot.data(), &ws.tree);
+  NewtonEuler(tree_, ws.inertias, ws.applied.data(), &ws.tree, ws.tau.data());
+}
+
+bool EquationsOfMotion::Evaluate(double time, const double* q, const double* v) {
   ++evaluations;
   SetPose(q);
   FindDriveMotion(time);
-  now_->motion.SetVelocities(v, held_rates_.data());
-  now_->forces.Evaluate(time, &now_->motion);
-  now_->motion.Accelerate(now_->motion.ws().passive, held_slopes_.data());
+  ConstrainedMotion& motion = now_->motion;
+  motion.SetVelocities(v, held_rates_.data());
+  if (now_->model.has_passive || prepared_.simulation.table_coordinate || !contacts_.empty()) {
+    now_->forces.FindJoints(&motion);
+    contacts_.SetSliding(&motion);
+  }
+  now_->forces.Evaluate(time, &motion);
+  if (under_load_) return AccelerateUnderLoad();
+  now_->forces.Apply(&motion);
+  motion.Accelerate(motion.ws().passive, held_slopes_.data());
+  return true;
+}
+
+/// Friction follows the joints' wrenches, and they the accelerations under friction.
+bool EquationsOfMotion::AccelerateUnderLoad() {
+  ConstrainedMotion& motion = now_->motion;
+  LoadWorkspace<double>& ws = motion.ws();
+  JointFrames(tree_, ws.tree, &ws.joints);
+  ws.reactions.Factor(ws.tree, ws.joints);
+  const bool settled = friction_.Run(tree_.length, &ws.loads, [&] {
+    now_->forces.Apply(&motion);
+    motion.Accelerate(ws.passive, held_slopes_.data());
+    held_along_ = now_->forces.motors();
+    contacts_.AddHeldForces(motion, drives(), &held_along_);
+    ws.exerted = held_along_.data();
+    EquilibriumPass(now_->model, &ws);
+  });
+  now_->forces.Apply(&motion);
+  motion.Accelerate(ws.passive, held_slopes_.data());
+  return settled && LockingJoint(now_->model, ws, true) < 0;
+}
+
+std::vector<Vector3d> EquationsOfMotion::BesideSprings() const {
+  std::vector<Vector3d> beside = now_->forces.BesideSprings(now_->motion);
+  contacts_.AddHeldForces(now_->motion, drives(), &beside);
+  return beside;
+}
+
+void EquationsOfMotion::Impact(double time, const double* q, const double* v,
+                               const std::vector<Contacts::Hit>& hits) {
+  std::vector<RateRow> rows = HeldRows();
+  FindDriveMotion(time);
+  std::vector<double> rates = held_rates_;
+  for (const Contacts::Hit& hit : hits) {
+    rows.push_back(hit.row);
+    rates.push_back(hit.rate);
+  }
+  SetPose(q);
+  now_->motion.Hold(rows);
+  now_->motion.SetPose(q);
+  now_->motion.SetVelocities(v, rates.data());
 }
 
 bool EquationsOfMotion::Slopes(double time, const double* y, double* slopes) {
   const double* const v = y + tree_.nq;
-  Evaluate(time, y, v);
-  if (now_ == singular_.get() && !from_singular_) return false;
+  avoids_singular_ = !from_singular_;
+  const bool found = Evaluate(time, y, v);
+  avoids_singular_ = false;
+  if (!found || leads_over_) return false;
   const LoadWorkspace<double>& ws = now_->motion.ws();
   CoordinateRates(tree_, ws.q.data(), ws.v.data(), slopes);
   std::copy(ws.vdot.data(), ws.vdot.data() + tree_.nv, slopes + tree_.nq);
@@ -152,6 +236,22 @@ double EquationsOfMotion::Close(double time, double* q) {
   return now_->motion.Close(std::max(kClosed, 0.1 * prepared_.closure_tolerance), q);
 }
 
+double EquationsOfMotion::RateDrift(const double* v) const {
+  const TreeWorkspace<double>& ws = now_->motion.ws().tree;
+  double largest = 0;
+  for (size_t l = 0; l < tree_.loops.size(); ++l) {
+    const Loop& loop = tree_.loops[l];
+    const Vector6d* column = &ws.loop_columns[ws.first_column[l]];
+    Vector6d rates = Vector6d::Zero();
+    for (const LoopColumn& c : loop.columns) rates += *column++ * v[c.v];
+    for (int i = 0; i < loop.rows; ++i) {
+      const double unit = IsLengthRow(loop.type, i) ? 1 / tree_.length : 1;
+      largest = std::max(largest, unit * std::abs(rates[i]));
+    }
+  }
+  return largest;
+}
+
 double EquationsOfMotion::KineticEnergyHere() const {
   const LoadWorkspace<double>& ws = now_->motion.ws();
   return KineticEnergy(tree_, ws.inertias, ws.tree);
@@ -159,10 +259,6 @@ double EquationsOfMotion::KineticEnergyHere() const {
 
 double EquationsOfMotion::WeightEnergyHere() const {
   return WeightEnergy(tree_, now_->motion.ws().inertias);
-}
-
-double EquationsOfMotion::Energy() const {
-  return KineticEnergyHere() + WeightEnergyHere() + now_->forces.SpringEnergy(now_->motion);
 }
 
 }  // namespace vmech

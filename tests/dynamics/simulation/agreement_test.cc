@@ -1,0 +1,156 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "simulated.h"
+#include "support/windows.h"
+#include "vmech/dynamics/in_hand/coupled_dynamics.h"
+#include "vmech/dynamics/loads/run_load_study.h"
+#include "vmech/kinematics/loops/assembled_mechanism.h"
+#include "vmech/kinematics/tree/grasp_frame.h"
+
+namespace vmech {
+namespace {
+
+struct Case {
+  std::string example;
+  double end;
+};
+
+class EveryMechanism : public testing::TestWithParam<Case> {};
+
+/// IDAS on the index-two equations shares no solve with CVODES on the free motions.
+TEST_P(EveryMechanism, MovesTheSameByCvodesAndByIdas) {
+  Simulation simulation;
+  simulation.mechanism = Example(GetParam().example);
+  simulation.times = {0, 0.5 * GetParam().end, GetParam().end};
+  const SimulationResult by_cvodes = Simulate(simulation, Tight(1e-10));
+  SimulationOptions options = Tight(1e-9);
+  options.method = SimulationMethod::kIdas;
+  const SimulationResult by_idas = Simulate(simulation, options);
+  ASSERT_EQ(by_idas.status, SimulationStatus::kFinished) << by_idas.message;
+  const double size = 1 + by_cvodes.V(2).cwiseAbs().maxCoeff();
+  EXPECT_LT((by_idas.Q(2) - by_cvodes.Q(2)).cwiseAbs().maxCoeff(), 1e-6);
+  EXPECT_LT((by_idas.V(2) - by_cvodes.V(2)).cwiseAbs().maxCoeff(), 1e-5 * size);
+  EXPECT_LT((by_idas.Vdot(2) - by_cvodes.Vdot(2)).cwiseAbs().maxCoeff(),
+            1e-4 * (1 + by_cvodes.Vdot(2).cwiseAbs().maxCoeff()));
+  EXPECT_LT(by_cvodes.statistics.largest_closure, 1e-12);
+}
+
+INSTANTIATE_TEST_SUITE_P(Examples, EveryMechanism,
+                         testing::Values(Case{"four-bar", 0.5}, Case{"rssr", 0.3},
+                                         Case{"bricard", 0.5}, Case{"spherical-four-bar", 0.25},
+                                         Case{"delta-robot", 0.1}, Case{"two-link-arm", 0.5},
+                                         Case{"stewart-gough", 0.05}),
+                         [](const auto& info) { return TestName(info.param.example); });
+
+/// A four-bar with a motor, a spring, a damper, friction and a force from outside.
+Simulation LoadedFourBar() {
+  Simulation simulation;
+  simulation.mechanism = Example("four-bar");
+  Mechanism& m = simulation.mechanism;
+  m.joints[1].passive[0] = {0.8, 0.3, 0.05, 0};
+  m.joints[2].passive[0] = {0, 0, 0.02, 0.1};
+  JointMotor motor;
+  motor.at = {0, 0};
+  motor.force = {{0, 0.3, 1}, {2, -1, 1}, 0};
+  simulation.motors = {motor};
+  ExternalLoad load;
+  load.link = m.joints[1].second.link;
+  load.p_L = {0.05, 0.02, 0};
+  load.over = ExternalLoad::Over::kTime;
+  load.at = {0, 1};
+  load.wrenches = {{{1, -2, 0.5}, {0, 0, 0}}, {{0, 3, 0}, {0.1, 0, 0.2}}};
+  simulation.external = {load};
+  simulation.start_rates = {{{0, 0}, 3}};
+  for (int i = 0; i <= 8; ++i) simulation.times.push_back(0.1 * i);
+  return simulation;
+}
+
+TEST(Simulate, InverseDynamicsGivesBackTheForcesAndTheWrenches) {
+  const Simulation simulation = LoadedFourBar();
+  const SimulationResult result = Simulate(simulation);
+  ASSERT_EQ(result.status, SimulationStatus::kFinished) << result.message;
+  const LoadArrays& loads = result.loads.poses.arrays();
+  for (size_t i = 0; i < result.size(); ++i) {
+    LoadStudy study;
+    study.mechanism = result.tree.mechanism;
+    SetStarts(result.tree, result.Q(i), &study.mechanism);
+    const JointSample crank = loads.Joint(i, 0);
+    study.drives = {
+        {0, 0, MotionLaw::Uniform(crank.position[0], crank.rate[0], crank.acceleration[0])}};
+    study.times = {0};
+    study.external = simulation.external;
+    const Wrenchd &a = study.external[0].wrenches[0], &b = study.external[0].wrenches[1];
+    const double s = result.times[i];
+    study.external[0].over = ExternalLoad::Over::kConstant;
+    study.external[0].at.clear();
+    study.external[0].wrenches = {
+        {(1 - s) * a.force + s * b.force, (1 - s) * a.moment + s * b.moment}};
+    const PoseLoads inverse = RunLoadStudy(study).poses.front();
+    EXPECT_NEAR(inverse.drives[0].force, result.motor_forces[i], 1e-7);
+    for (size_t j = 0; j < loads.joint_count(); ++j) {
+      EXPECT_LT((inverse.joints[j].Stacked() - loads.Wrench(i, j).Stacked()).norm(),
+                1e-7 * (1 + loads.Wrench(i, j).Stacked().norm()))
+          << j;
+    }
+  }
+  EXPECT_LT(result.loads.max_power_error, 1e-9);
+}
+
+TEST(Simulate, ADriveMovesAsPrescribedAndItsForceIsThatOfALoadStudy) {
+  Simulation simulation;
+  simulation.mechanism = Example("slider-crank");
+  LoadStudy study;
+  study.drives = {{0, 0, MotionLaw::Uniform(0.3, 5, 2)}};
+  simulation.drives = study.drives;
+  simulation.times = {0, 0.2, 0.7};
+  const SimulationResult result = Simulate(simulation);
+  study.mechanism = simulation.mechanism;
+  study.times = simulation.times;
+  const LoadStudyResult inverse = RunLoadStudy(study);
+  for (size_t i = 0; i < 3; ++i) {
+    const double force = inverse.poses[i].drives[0].force;
+    EXPECT_NEAR(result.loads.poses[i].drives[0].force, force, 1e-9 * (1 + std::abs(force)));
+  }
+}
+
+/// Four-bar in a hand that stands still: errors of the real-time loop's step against the
+/// simulation.
+TEST(CoupledDynamics, ConvergesToTheSimulationAsItsStepShrinks) {
+  Simulation simulation;
+  simulation.mechanism = Example("four-bar");
+  GraspSpring spring;
+  spring.grasp = 0;
+  spring.coupling.stiffness << 40, 40, 40, 0.5, 0.5, 0.5;
+  spring.coupling.damping << 4, 4, 4, 0.02, 0.02, 0.02;
+  const AssembledMechanism assembled = RequireAssembled(simulation.mechanism);
+  const KinematicTree tree = BuildKinematicTree(assembled.mechanism);
+  const GraspFrame grasp = GraspFrameOf(tree, 0);
+  const VectorXd q = StartCoordinates(tree);
+  CoupledDynamics at_start(tree, grasp, spring.coupling, 1e-3, q);
+  Posed X_WH = at_start.X_WG();
+  X_WH.p += Vector3d(0.03, 0.02, 0);
+  spring.hand = [&](double) { return HandSample{X_WH, Vector6d::Zero(), Vector6d::Zero()}; };
+  simulation.hand = spring;
+  constexpr double kEnd = 0.1;
+  simulation.times = {0, kEnd};
+  const SimulationResult exact = Simulate(simulation, Tight(1e-11));
+  std::vector<double> errors;
+  for (const double step : {1e-3, 5e-4, 2.5e-4}) {
+    CoupledDynamics loop(tree, grasp, spring.coupling, step, q);
+    for (int i = 0; i < std::lround(kEnd / step); ++i) {
+      ASSERT_EQ(loop.Step(X_WH, Vector6d::Zero()), CoupledStatus::kMoved);
+    }
+    const int crank = CoordinateIndex(tree, 0, 0);
+    errors.push_back(loop.q()[crank] - PositionIn(exact, 1, tree.mechanism.joints[0].name));
+  }
+  EXPECT_NEAR(errors[0] / errors[1], 2, 0.1);  // first order
+  EXPECT_NEAR(errors[1] / errors[2], 2, 0.05);
+  EXPECT_LT(std::abs(errors[2]), 2e-3);
+}
+
+}  // namespace
+}  // namespace vmech
