@@ -48,7 +48,7 @@ RateRow RateRowOf(const KinematicTree& tree, FreedomId at) {
 }
 
 ConstrainedMotion::ConstrainedMotion(const LoadModel& model)
-    : model_(model), tree_(model.tree), ws_(model), free_(model.partition.driven) {
+    : tree_(model.tree), ws_(model), free_(model.partition.driven) {
   const int nv = tree_.nv, f = freedoms();
   const bool open = tree_.loops.empty();
   if (open) {

@@ -15,7 +15,7 @@ struct RateRow {
   int loop = -1;
   int freedom = 0;  ///< of that loop's cut joint
 };
-RateRow RateRowOf(const KinematicTree& tree, FreedomId freedom);
+RateRow RateRowOf(const KinematicTree& tree, FreedomId at);
 
 /// How a tree with loops can move at one pose, and how forces accelerate it. N are the free
 /// motions, C N = 0, of the independent freedoms (`driven` of the model's partition; it has no idle
@@ -84,7 +84,6 @@ class ConstrainedMotion {
   void FactorHeld() noexcept;
   void SolveFree(VectorXd* s) noexcept;
 
-  const LoadModel& model_;
   const KinematicTree& tree_;
   LoadWorkspace<double> ws_;
   std::vector<int> free_;   ///< the independent velocities
