@@ -66,6 +66,14 @@ Markup EventTable(const StudyFile& file, const SimulationResult& simulation) {
          of_joint ? plot::FormatSignificant(event.rate, 4) : ""});
   }
   Markup text = html::RenderTable(table);
+  const auto is_rebound = [](const SimulationEvent& event) {
+    return event.kind == SimulationEvent::Kind::kRebound;
+  };
+  if (std::any_of(simulation.events.begin(), simulation.events.end(), is_rebound)) {
+    text += html::Paragraph(
+        "An impact is over in no time: the loads on this page do not hold the blows, whose force "
+        "depends on how elastic the stops are.");
+  }
   if (simulation.events.size() > kMost) {
     text += html::Paragraph(
         fmt::format("And {} more, in events.csv.", simulation.events.size() - kMost));

@@ -12,6 +12,7 @@
 #include "vmech/dynamics/loads/pose/store_pose_loads.h"
 #include "vmech/dynamics/reactions/certainty.h"
 #include "vmech/kinematics/loops/dimensionless_loops.h"
+#include "vmech/mechanisms/joint_type.h"
 
 namespace vmech {
 namespace {
@@ -150,7 +151,56 @@ void Recorder::JudgeLoads() {
     }
   }
   loads.drive_certainty.assign(prepared_.simulation.drives.size(), Certainty::kCertain);
+  if (FrictionFollowsTheRule()) {
+    DoubtAll(
+        "dry friction goes with loads that statics does not determine, and so does the motion");
+  } else if (HeldMoreThanOnce()) {
+    DoubtAll(
+        "several contacts of a loop stick or stand at limits at once, and share what holds it");
+  }
   loads.open = FindOpenComponents(loads, FindPeaks(loads.poses.arrays()), nullptr, tree.length);
+}
+
+/// Friction moves the mechanism: where it goes with a load that the rule settles, all else does.
+bool Recorder::FrictionFollowsTheRule() const {
+  const std::vector<Joint>& joints = equations_.tree().mechanism.joints;
+  for (size_t j = 0; j < joints.size(); ++j) {
+    if (joints[j].load_friction.coefficient == 0) continue;
+    for (const Certainty verdict : result_.loads.certainty[j]) {
+      if (verdict == Certainty::kNotDetermined) return true;
+    }
+  }
+  return false;
+}
+
+/// Does a mechanism with loops ever have two or more freedoms that contacts hold? They may be of
+/// one loop, and nothing tells then how much each of them exerts.
+bool Recorder::HeldMoreThanOnce() const {
+  const KinematicTree& tree = equations_.tree();
+  if (tree.loops.empty()) return false;
+  int held = 0;
+  for (const SimulationEvent& event : result_.events) {
+    using Kind = SimulationEvent::Kind;
+    const auto freedoms = [&] { return FreedomsOf(tree.mechanism.joints[event.at.joint].type); };
+    if (event.kind == Kind::kSticks) held += freedoms();
+    if (event.kind == Kind::kSlips) held -= freedoms();
+    if (event.kind == Kind::kLimitCloses) ++held;
+    if (event.kind == Kind::kLimitOpens) --held;
+    if (held > 1) return true;
+  }
+  return false;
+}
+
+void Recorder::DoubtAll(const std::string& why) {
+  LoadStudyResult& loads = result_.loads;
+  for (JointCertainty& verdicts : loads.certainty) {
+    for (Certainty& verdict : verdicts) {
+      if (verdict == Certainty::kCertain) verdict = Certainty::kNotDetermined;
+    }
+  }
+  for (Certainty& verdict : loads.drive_certainty) verdict = Certainty::kNotDetermined;
+  result_.warnings.push_back(fmt::format("no load is certain: {}; the figures follow the rule '{}'",
+                                         why, NameOf(prepared_.simulation.rule)));
 }
 
 void Recorder::Finish() {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "vmech/dynamics/loads/load_arrays.h"
 #include "vmech/dynamics/simulation/equations/equations_of_motion.h"
@@ -25,6 +26,9 @@ class Recorder {
   void RecordLoads(double time);
   void LeaveOut(size_t pose);
   void JudgeLoads();
+  bool FrictionFollowsTheRule() const;
+  bool HeldMoreThanOnce() const;
+  void DoubtAll(const std::string& why);
 
   const PreparedSimulation& prepared_;
   const SimulationOptions& options_;

@@ -90,9 +90,11 @@ Mechanism WithoutWeight(const std::string& example) {
   return mechanism;
 }
 
+/// Those that can be held.
 std::vector<std::string> Examples() {
   std::vector<std::string> names = ExampleNames();
   names.insert(names.end(), {"puma-560", "redundant-arm", "stewart-gough-sps"});
+  std::erase_if(names, [](const std::string& name) { return Example(name).grasps.empty(); });
   return names;
 }
 
@@ -101,14 +103,12 @@ class EveryExampleAndGrip : public testing::TestWithParam<std::tuple<std::string
 TEST_P(EveryExampleAndGrip, RunsOrIsRefused) {
   const auto& [name, grip] = GetParam();
   const Mechanism mechanism = Example(name);
-  if (mechanism.grasps.empty()) GTEST_SKIP() << "nothing to hold";
-  std::unique_ptr<Session> session;
-  try {
-    session = std::make_unique<Session>(mechanism, grip);
-  } catch (const std::invalid_argument& refused) {
-    EXPECT_GT(std::string(refused.what()).size(), 40u);
+  const bool refusable = name == "redundant-arm" || name == "beam-on-three-supports";
+  if (refusable) {  // a link stays loose, or nothing moves
+    EXPECT_THROW(Session(mechanism, grip), std::invalid_argument);
     return;
   }
+  const auto session = std::make_unique<Session>(mechanism, grip);
   const RunSummary summary = session->Wandering(Seconds());
   EXPECT_EQ(summary.status, RunStatus::kFinished) << summary.FullReport();
   EXPECT_LE(summary.peak_force, session->info.linear.peak * (1 + 1e-9));

@@ -72,6 +72,15 @@ TEST(Contacts, AStopHoldsAndLetsGo) {
   EXPECT_NEAR(result.loads.poses[1].joints[0].force.z(), 2 * kGravity, 1e-9);
 }
 
+/// Of all components of all joints.
+int CountCertain(const SimulationResult& result) {
+  int count = 0;
+  for (const JointCertainty& verdicts : result.loads.certainty) {
+    count += static_cast<int>(std::count(verdicts.begin(), verdicts.end(), Certainty::kCertain));
+  }
+  return count;
+}
+
 SimulationResult OnSlope(double angle, double coefficient) {
   Simulation simulation;
   simulation.mechanism = Block({std::cos(angle), 0, -std::sin(angle)});
@@ -85,6 +94,7 @@ TEST(Contacts, ABlockSticksBelowTheFrictionAngleAndSlidesAboveIt) {
   const SimulationResult sticks = OnSlope(friction_angle - 1e-6, 0.4);
   EXPECT_EQ(sticks.Q(1)[0], 0);
   EXPECT_EQ(sticks.events.front().kind, Kind::kSticks);
+  EXPECT_EQ(CountCertain(sticks), 6);
   const double steeper = friction_angle + 0.1;
   const SimulationResult slides = OnSlope(steeper, 0.4);
   const double acceleration = kGravity * (std::sin(steeper) - 0.4 * std::cos(steeper));
@@ -140,6 +150,35 @@ TEST(Contacts, AMechanismSlipsWhereAllItsFrictionIsSpent) {
                                   [](const auto& event) { return event.kind == Kind::kSlips; });
   ASSERT_NE(slips, result.events.end());
   EXPECT_NEAR(2 * slips->time, 0.2 * ratios, 1e-8);
+  EXPECT_EQ(CountCertain(result), 0);
+  EXPECT_EQ(result.warnings.size(), 1U);
+  EXPECT_GT(CountCertain(turning), 0);
+}
+
+/// Friction of a linkage that is overconstrained across its plane goes with loads that no statics
+/// tells: with another rule the mechanism moves otherwise, and nothing is certain.
+TEST(Contacts, FrictionUnderOpenLoadsLeavesNothingCertain) {
+  Simulation simulation;
+  simulation.mechanism = Example("four-bar");
+  simulation.mechanism.gravity_W = {0, -9.81, 2};
+  for (Joint& joint : simulation.mechanism.joints) {
+    joint.load_friction.coefficient = 0.1;
+    joint.load_friction.radius = 0.02;
+    joint.load_friction.thrust_radius = 0.03;
+    joint.load_friction.length = 0.05;
+  }
+  simulation.start_rates = {{{0, 0}, 3}};
+  simulation.times = {0, 0.1};
+  const SimulationResult stiff = Simulate(simulation);
+  ASSERT_EQ(stiff.status, SimulationStatus::kFinished) << stiff.message;
+  simulation.rule = ReactionRule::kMinimumNorm;
+  simulation.norm_length = 0.01;
+  const SimulationResult other = Simulate(simulation);
+  EXPECT_GT((stiff.Q(1) - other.Q(1)).norm(), 1e-6);
+  for (const SimulationResult* result : {&stiff, &other}) {
+    EXPECT_EQ(CountCertain(*result), 0);
+    EXPECT_EQ(result->warnings.size(), 1U);
+  }
 }
 
 TEST(Simulate, EndsWhereAWatchedCoordinateIsReached) {

@@ -35,8 +35,8 @@ TEST(Simulate, WindowsFallThroughTheirFlatPose) {
     simulation.mechanism = Windows(static_cast<int>(windows), 0);
     simulation.start_rates = {{FreedomOf(simulation.mechanism, "a0"), -1}};
     for (double t = 0; t < 10.5; ++t) simulation.times.push_back(t);
-    // As little as the time of the longest one allows.
-    const double tolerance = windows > 2 ? 1e-10 : 1e-12, error = windows > 2 ? 1e-6 : 1e-7;
+    // As little as the time of the longest one allows; measured there 1.3e-7 at most.
+    const double tolerance = windows > 2 ? 1e-10 : 1e-12, error = windows > 2 ? 5e-7 : 1e-7;
     const SimulationResult result = Simulate(simulation, Tight(tolerance));
     ASSERT_EQ(result.status, SimulationStatus::kFinished) << result.message;
     const double lean = PositionIn(result, 10, "a0");
