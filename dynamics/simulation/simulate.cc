@@ -13,6 +13,7 @@
 #include "vmech/dynamics/simulation/integrator.h"
 #include "vmech/dynamics/simulation/prepared_simulation.h"
 #include "vmech/dynamics/simulation/recorder.h"
+#include "vmech/dynamics/simulation/rough_places.h"
 #include "vmech/dynamics/simulation/start_state.h"
 #include "vmech/kinematics/loops/loops.h"
 
@@ -154,10 +155,10 @@ class Run {
       PassEvent();
     } else {
       ReturnToLoops();
-      if (!NearSingularPose(time_ - from)) {
+      if (!NearSingularPose(equations_, time_ - from)) {
         ChangeMethodIfStiff();
       } else if (!index_two_) {
-        LeapOverSingularPose();
+        Leap();
       }
     }
     LookAround();
@@ -327,60 +328,13 @@ class Run {
     if (failed_at_ == time_) return false;
     failed_at_ = time_;
     if (index_two_) return BringBack(), true;
-    return LeapOverSingularPose();
+    return Leap();
   }
 
-  /// Is it next to a singular pose, or does it creep up to one? Its distance is the root of the
-  /// pivot.
-  bool NearSingularPose(double step) {
-    constexpr double kNextTo = 1e-7, kInReach = 1e-6, kCreeps = 0.1;
-    if (equations_.tree().loops.empty()) return false;
-    const double pivot = equations_.motion().smallest_pivot();
-    const double moved = step * equations_.motion().ws().v.cwiseAbs().maxCoeff();
-    return pivot < kNextTo || (pivot < kInReach && moved < kCreeps * std::sqrt(pivot));
-  }
-
-  /// Near a singular pose loops leave little more than rounding of how they bend there, and small
-  /// steps do not lead over it: one of Adams and Bashforth does, of a fraction of a millisecond, by
-  /// slopes behind it.
-  bool LeapOverSingularPose() {
-    constexpr double kShortest = 1e-6, kLongest = 4e-3;  // [rad]
-    VectorXd slopes[4];
-    if (!FindSlopes(time_, y_, &slopes[0])) return false;
-    const double pivot = equations_.motion().smallest_pivot();
-    const double speed = std::max(equations_.motion().ws().v.cwiseAbs().maxCoeff(), 1e-9);
-    for (double step = kShortest / speed; step < kLongest / speed; step *= 2) {
-      VectorXd behind = y_, there;
-      for (int k = 1; k < 4; ++k) {
-        if (!StepBack(time_ - k * step, step, slopes[k - 1], &behind)) return false;
-        if (!FindSlopes(time_ - k * step, behind, &slopes[k])) return false;
-      }
-      behind = y_ + step / 24 * (55 * slopes[0] - 59 * slopes[1] + 37 * slopes[2] - 9 * slopes[3]);
-      if (time_ + step > end() || !FindSlopes(time_ + step, behind, &there)) continue;
-      if (equations_.motion().smallest_pivot() < pivot) continue;
-      if (step == kShortest / speed) return false;  // it moves away from it
-      y_ = behind;
-      time_ += step;
-      BringBack();
-      return true;
-    }
-    return false;
-  }
-
-  bool FindSlopes(double time, const VectorXd& y, VectorXd* slopes) {
-    slopes->resize(y.size());
-    return equations_.Slopes(time, y.data(), slopes->data());
-  }
-
-  /// By the fourth-order rule of Runge and Kutta, to `time` from a step later.
-  bool StepBack(double time, double step, const VectorXd& k1, VectorXd* y) {
-    VectorXd k2, k3, k4;
-    const double middle = time + 0.5 * step;
-    const bool found = FindSlopes(middle, *y - 0.5 * step * k1, &k2) &&
-                       FindSlopes(middle, *y - 0.5 * step * k2, &k3) &&
-                       FindSlopes(time, *y - step * k3, &k4);
-    if (found) *y -= step / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
-    return found;
+  bool Leap() {
+    if (!LeapOverSingularPose(end(), &equations_, &time_, &y_)) return false;
+    BringBack();
+    return true;
   }
 
   /// Onto the loops, and on from there.
@@ -453,35 +407,12 @@ class Run {
     last_look_ = time_;
     looked_at_ = steps;
     next_look_ = 2 * steps;
-    if (FastestDecay() * step < kShort) return;
+    if (FastestDecay(time_, y_, &equations_) * step < kShort) return;
     CountUp();
     statistics_.method = SimulationMethod::kBdf;
     result_.events.push_back({time_, SimulationEvent::Kind::kMethodChanged, {}, 0, 0});
     integrator_ = MakeIntegrator(problem_, statistics_.method);
     Restart();
-  }
-
-  /// The largest eigenvalue of df/dy, by a power iteration, if it is real and negative: its size
-  /// [1/s]; else 0.
-  double FastestDecay() {
-    constexpr int kIterations = 20;
-    constexpr double kMove = 1e-7, kNearlyReal = 0.2;
-    const Eigen::Index moving = y_.size() - 2;  // energies do not act on anything
-    VectorXd here(y_.size()), there(y_.size()), moved = y_;
-    if (!equations_.Slopes(time_, y_.data(), here.data())) return 0;
-    VectorXd d = here.head(moving);
-    double rate = 0;
-    for (int i = 0; i < kIterations && d.norm() > 0; ++i) {
-      d.normalize();
-      moved.head(moving) = y_.head(moving) + kMove * d;
-      if (!equations_.Slopes(time_, moved.data(), there.data())) return 0;
-      const VectorXd Jd = (there - here).head(moving) / kMove;
-      rate = d.dot(Jd);
-      const bool real = (Jd - rate * d).norm() < kNearlyReal * std::abs(rate);
-      if (!real) rate = 0;
-      d = Jd;
-    }
-    return std::max(0.0, -rate);
   }
 
   /// The integrator's counts into the statistics.
