@@ -51,8 +51,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(vmech_settings INTERFACE -Wno-restrict)
 endif()
 if(VMECH_WARNINGS_AS_ERRORS)
-  target_compile_options(vmech_settings INTERFACE
-                         $<$<NOT:$<BOOL:$<TARGET_PROPERTY:VMECH_ONLY_WARNS>>>:-Werror>)
+  target_compile_options(vmech_settings INTERFACE -Werror)
 endif()
 if(VMECH_SANITIZE)
   target_compile_options(vmech_settings INTERFACE -fsanitize=${VMECH_SANITIZE}

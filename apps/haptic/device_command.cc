@@ -229,8 +229,11 @@ void Serve(const DeviceArguments& arguments, Master* master) {
 
 int RunDevice(const DeviceArguments& arguments) {
   constexpr double kLook = 1;  // [s]
-  const std::unique_ptr<Master> master =
-      MakeMaster({arguments.master, arguments.rate, Grip::kAbsent});
+  MasterRequest request;
+  request.word = arguments.master;
+  request.rate = arguments.rate;
+  request.grip = Grip::kAbsent;
+  const std::unique_ptr<Master> master = MakeMaster(request);
   master->Configure();
   FreeRunningClock free;
   WallClock wall;
