@@ -35,7 +35,8 @@ function(vmech_precompile target name)
     if(type STREQUAL "EXECUTABLE")
       # g++ 12 takes a header that is precompiled for one of the project's own, and warns of what it
       # sees inside std::string and in GoogleTest's macros.
-      target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-dangling-else)
+      target_compile_options(${target} PRIVATE
+                             -Wno-array-bounds -Wno-stringop-overflow -Wno-dangling-else)
     endif()
   endif()
 endfunction()
