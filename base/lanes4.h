@@ -117,7 +117,7 @@ T FromLanes(const Number& number) {
   if constexpr (kLanesOf<T> == 1) {
     return number(0);
   } else {
-    return Lanes4::Of(number);
+    return T::Of(number);
   }
 }
 

@@ -97,8 +97,8 @@ TreeInertias<T>::TreeInertias(const KinematicTree& tree, const TreeDesign<T>& de
 }
 
 template <typename T>
-void SetGravity(const Vector3d& gravity_W, TreeWorkspace<T>* ws) noexcept {
-  ws->at(-1).A.linear = TripleOf<T>(-gravity_W.cast<T>());
+void SetGravity(const std::type_identity_t<Vector3<T>>& gravity_W, TreeWorkspace<T>* ws) noexcept {
+  ws->at(-1).A.linear = TripleOf<T>(Vector3<T>(-gravity_W));
 }
 
 template <typename T>
@@ -204,7 +204,8 @@ VectorXd BiasForces(const KinematicTree& tree, const VectorXd& q, const VectorXd
 // NOLINTBEGIN(bugprone-macro-parentheses): T is a type
 #define VMECH_INSTANTIATE(T)                                                                   \
   template struct TreeInertias<T>;                                                             \
-  template void SetGravity<T>(const Vector3d&, TreeWorkspace<T>*) noexcept;                    \
+  template void SetGravity<T>(const std::type_identity_t<Vector3<T>>&, TreeWorkspace<T>*)      \
+      noexcept;                                                                                \
   template void BodyInertias<T>(const KinematicTree&, const TreeWorkspace<T>&,                 \
                                 TreeInertias<T>*) noexcept;                                    \
   template void GyroscopicWrenches<T>(const KinematicTree&, const TreeInertias<T>&,            \
@@ -214,6 +215,7 @@ VectorXd BiasForces(const KinematicTree& tree, const VectorXd& q, const VectorXd
   template void GeneralisedForces<T>(const KinematicTree&, const TreeWorkspace<T>&, T*) noexcept;
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
+VMECH_INSTANTIATE(Dual4)
 VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)

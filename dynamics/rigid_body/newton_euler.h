@@ -1,5 +1,6 @@
 #pragma once
 
+#include <type_traits>
 #include <vector>
 
 #include "vmech/kinematics/tree/forward_kinematics.h"
@@ -40,7 +41,7 @@ struct TreeInertias {
 /// Gravity is applied by giving the ground the acceleration -g, once, so that no body needs a
 /// weight of its own.
 template <typename T>
-void SetGravity(const Vector3d& gravity_W, TreeWorkspace<T>* ws) noexcept;
+void SetGravity(const std::type_identity_t<Vector3<T>>& gravity_W, TreeWorkspace<T>* ws) noexcept;
 
 /// Inertias of the bodies. Needs X.
 template <typename T>

@@ -200,6 +200,7 @@ T CloseByNewton(const KinematicTree& tree, double tolerance, int max_steps,
                               TreeWorkspace<T>*, T*);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
+VMECH_INSTANTIATE(Dual4)
 VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)

@@ -275,6 +275,7 @@ T LargestLoopError(const KinematicTree& tree, const TreeWorkspace<T>& ws) {
   template T LargestLoopError<T>(const KinematicTree&, const TreeWorkspace<T>&);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
+VMECH_INSTANTIATE(Dual4)
 VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)

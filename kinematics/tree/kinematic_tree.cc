@@ -160,6 +160,21 @@ void SetNumbers(const TreeDesign<double>& design, KinematicTree* tree) {
 }  // namespace
 
 template <typename T>
+typename Design<T>::JointNumbers NumbersOf(const Joint& joint) {
+  typename Design<T>::JointNumbers numbers{};
+  numbers.pitch = T(joint.pitch);
+  for (size_t k = 0; k < joint.passive.size(); ++k) {
+    const Passive& passive = joint.passive[k];
+    numbers.passive[k] = {T(passive.stiffness), T(passive.rest), T(passive.viscous),
+                          T(passive.coulomb)};
+  }
+  const LoadFriction& friction = joint.load_friction;
+  numbers.load_friction = {T(friction.coefficient), T(friction.radius), T(friction.thrust_radius),
+                           T(friction.length), T(friction.width)};
+  return numbers;
+}
+
+template <typename T>
 Design<T> DesignOf(const Mechanism& mechanism) {
   Design<T> design;
   for (const Link& link : mechanism.links) {
@@ -170,7 +185,8 @@ Design<T> DesignOf(const Mechanism& mechanism) {
       design.links.back().X_LA.push_back(anchor.X_LA.cast<T>());
     }
   }
-  for (const Joint& joint : mechanism.joints) design.pitches.push_back(T(joint.pitch));
+  for (const Joint& joint : mechanism.joints) design.joints.push_back(NumbersOf<T>(joint));
+  design.gravity_W = mechanism.gravity_W.cast<T>();
   return design;
 }
 
@@ -192,7 +208,7 @@ TreeDesign<T> DesignOfTree(const KinematicTree& tree, const Design<T>& design) {
     const AnchorId& outboard = node.reversed ? joint.first : joint.second;
     const bool first = node.parent < 0 || tree.nodes[node.parent].joint != node.joint;
     typename TreeDesign<T>::NodeNumbers numbers;
-    numbers.pitch = design.pitches[node.joint];
+    numbers.pitch = design.joints[node.joint].pitch;
     numbers.X_PF =
         (first ? in_node(inboard) : PureRotation<T>(tree.nodes[node.parent].R_FE.transpose())) *
         PureRotation<T>(node.R_FE);
@@ -207,7 +223,7 @@ TreeDesign<T> DesignOfTree(const KinematicTree& tree, const Design<T>& design) {
   }
   for (size_t j = 0; j < tree.mechanism.joints.size(); ++j) {
     const Joint& joint = tree.mechanism.joints[j];
-    placed.placements.push_back({in_node(joint.first), in_node(joint.second), design.pitches[j]});
+    placed.placements.push_back({in_node(joint.first), in_node(joint.second), design.joints[j].pitch});
   }
   return placed;
 }
@@ -315,11 +331,13 @@ int CoordinateIndex(const KinematicTree& tree, int joint, int freedom) {
 
 // NOLINTBEGIN(bugprone-macro-parentheses): T is a type
 #define VMECH_INSTANTIATE(T)                                                      \
+  template typename Design<T>::JointNumbers NumbersOf<T>(const Joint&);           \
   template Design<T> DesignOf<T>(const Mechanism&);                               \
   template TreeDesign<T> DesignOfTree<T>(const KinematicTree&, const Design<T>&); \
   template TreeDesign<T> DesignOfTree<T>(const KinematicTree&);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
+VMECH_INSTANTIATE(Dual4)
 VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)

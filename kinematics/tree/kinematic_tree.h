@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "vmech/mechanisms/graph.h"
@@ -110,9 +111,17 @@ struct Design {
     Matrix3<T> I_Lcm;
     std::vector<Pose<T>> X_LA;  ///< anchors
   };
+  struct JointNumbers {
+    T pitch;
+    std::array<PassiveOf<T>, 3> passive;  ///< per freedom
+    LoadFrictionOf<T> load_friction;
+  };
   std::vector<LinkNumbers> links;
-  std::vector<T> pitches;  ///< of joints
+  std::vector<JointNumbers> joints;
+  Vector3<T> gravity_W;
 };
+template <typename T>
+typename Design<T>::JointNumbers NumbersOf(const Joint& joint);
 template <typename T>
 Design<T> DesignOf(const Mechanism& mechanism);
 

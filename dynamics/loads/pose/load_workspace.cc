@@ -7,15 +7,22 @@ namespace vmech {
 
 template <typename T>
 LoadWorkspace<T>::LoadWorkspace(const LoadModel& model)
-    : LoadWorkspace(model, DesignOfTree<T>(model.tree)) {}
+    : LoadWorkspace(model, DesignOf<T>(model.tree.mechanism), DesignOfTree<T>(model.tree)) {}
 
 template <typename T>
-LoadWorkspace<T>::LoadWorkspace(const LoadModel& model, const TreeDesign<T>& design)
-    : tree(model.tree, design),
+LoadWorkspace<T>::LoadWorkspace(const LoadModel& model, const Design<T>& design)
+    : LoadWorkspace(model, design, DesignOfTree(model.tree, design)) {}
+
+template <typename T>
+LoadWorkspace<T>::LoadWorkspace(const LoadModel& model, const Design<T>& design,
+                                const TreeDesign<T>& placed)
+    : numbers(design.joints),
+      gravity_W(design.gravity_W),
+      tree(model.tree, placed),
       dependents(model.tree, model.partition),
       reactions(model.tree, model.partition, model.compliances),
       joints(model.tree.mechanism.joints.size()),
-      inertias(model.tree, design),
+      inertias(model.tree, placed),
       applied(model.tree.nodes.size()),
       cut_passive(model.tree.loops.size()),
       sliding(joints.size(), Vector3<T>::Zero()),
@@ -30,15 +37,16 @@ LoadWorkspace<T>::LoadWorkspace(const LoadModel& model, const TreeDesign<T>& des
       mu(VectorX::Zero(model.tree.rows)),
       loads(joints.size(), {{}, Vector3<T>::Zero(), Vector3<T>::Zero(), Vector3<T>::Zero()}),
       drive_forces(model.drives.size(), T(0)) {
-  SetGravity(model.tree.mechanism.gravity_W, &tree);
+  SetGravity(gravity_W, &tree);
   const CoordinatePartition& p = model.partition;
   if (model.hand || !p.idle.empty()) {
-    motions = MatrixXd::Zero(model.tree.nv, static_cast<int>(p.driven.size() + p.idle.size()));
+    motions.setZero(model.tree.nv, static_cast<int>(p.driven.size() + p.idle.size()));
   }
 }
 
 template struct LoadWorkspace<double>;
 template struct LoadWorkspace<Dual>;
+template struct LoadWorkspace<Dual4>;
 template struct LoadWorkspace<Lanes4>;
 
 }  // namespace vmech

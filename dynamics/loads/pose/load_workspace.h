@@ -5,6 +5,7 @@
 #include "vmech/dynamics/loads/pose/friction_iteration.h"
 #include "vmech/dynamics/loads/pose/joint_load.h"
 #include "vmech/dynamics/loads/pose/load_model.h"
+#include "vmech/dynamics/loads/pose/study_motion.h"
 #include "vmech/dynamics/rigid_body/newton_euler.h"
 #include "vmech/kinematics/loops/closure.h"
 
@@ -19,7 +20,7 @@ struct RestingContact {
 };
 
 /// Memory for one thread, for one model that must outlive it. T is double for one pose at a time,
-/// Lanes4 for four in a row, or Dual for one and its derivative.
+/// Lanes4 for four in a row, or Dual and Dual4 for these and their derivatives.
 template <typename T>
 struct LoadWorkspace {
   using VectorX = Eigen::Matrix<T, Eigen::Dynamic, 1>;
@@ -27,8 +28,12 @@ struct LoadWorkspace {
   explicit LoadWorkspace(const LoadModel& model);
   /// With other numbers than the model's: a Dual that has slopes in some takes the derivative of
   /// every load by them along.
-  LoadWorkspace(const LoadModel& model, const TreeDesign<T>& design);
+  LoadWorkspace(const LoadModel& model, const Design<T>& design);
 
+  std::vector<typename Design<T>::JointNumbers> numbers;  ///< per joint
+  Vector3<T> gravity_W;
+  /// Of duals: how what the study prescribes goes with the parameter; null if it does not.
+  const PrescribedSlopes* slopes = nullptr;
   TreeWorkspace<T> tree;
   DependentSolver<T> dependents;
   ReactionSolver<T> reactions;
@@ -47,8 +52,9 @@ struct LoadWorkspace {
   VectorX passive;   ///< supplied by springs and friction
   VectorX open;      ///< what is left for drives and multipliers
   VectorX mu;        ///< multipliers of the cut joints
-  MatrixXd motions;  ///< [nv, independent]: free motions, where the hand or idle freedoms need them
-  MatrixXd idle_motions;  ///< [nv, idle]: those of them that are idle
+  /// [nv, independent]: free motions, where the hand or idle freedoms need them
+  Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic> motions;
+  Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic> idle_motions;  ///< [nv, idle]: those of them
   MatrixXd creep;         ///< [nv, standing drives]: the motion as each of them begins to move
   std::vector<Vector3d> creep_rates;  ///< [standing drives * joints]
   std::vector<RestingContact> resting;
@@ -65,6 +71,8 @@ struct LoadWorkspace {
   bool jammed = false;
   int locking_joint = -1;
   bool held_by_friction = false;
+ private:
+  LoadWorkspace(const LoadModel& model, const Design<T>& design, const TreeDesign<T>& placed);
 };
 
 }  // namespace vmech

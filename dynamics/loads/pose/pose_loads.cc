@@ -24,20 +24,40 @@ namespace {
 template <typename T>
 constexpr bool kSinglePose = std::is_same_v<T, double>;
 
-const MotionSample& DriveAt(const LoadModel& model, const Motion& motion, size_t pose, size_t k) {
-  return motion.drives[pose * model.drives.size() + k];
+/// A part of what drive k prescribes at the poses `pose`, ...; of duals with its slope.
+template <typename T>
+T Prescribed(const LoadModel& model, const Motion& motion, size_t pose, size_t k,
+             double MotionSample::*part, const LoadWorkspace<T>& ws) {
+  return FromLanes<T>([&](int lane) {
+    const size_t at = (pose + lane) * model.drives.size() + k;
+    const double value = motion.drives[at].*part;
+    if constexpr (kIsDual<T>) {
+      return Dual(value, ws.slopes == nullptr ? 0.0 : ws.slopes->drives[at].*part);
+    } else {
+      return value;
+    }
+  });
 }
 
 template <typename T>
-void GatherCoordinates(const Motion& motion, size_t pose, LoadWorkspace<T>* ws) {
+void GatherCoordinates(const LoadModel& model, const Motion& motion, size_t pose,
+                       LoadWorkspace<T>* ws) {
   for (Eigen::Index i = 0; i < ws->q.size(); ++i) {
     ws->q[i] = FromLanes<T>([&](int lane) { return motion.q(pose + lane)[i]; });
+  }
+  if constexpr (kIsDual<T>) {
+    for (size_t k = 0; k < model.drives.size(); ++k) {
+      const JointDrive& drive = model.drives[k];
+      ws->q[CoordinateIndex(model.tree, drive.joint, drive.freedom)].slope =
+          Prescribed(model, motion, pose, k, &MotionSample::position, *ws).slope;
+    }
   }
 }
 
 /// How the closed pose goes along with the numbers of the design: one step of Newton's, which at a
 /// closed pose moves slopes alone (implicit differentiation, C dq = e2).
-void CloseSlopes(const LoadModel& model, LoadWorkspace<Dual>* ws) {
+template <typename N>
+void CloseSlopes(const LoadModel& model, LoadWorkspace<DualOf<N>>* ws) {
   ws->dependents.StepCoordinates(ws->tree, ws->q.data());
   EvaluatePose(model.tree, ws->q.data(), &ws->tree);
   ws->dependents.Factor(ws->tree);
@@ -48,10 +68,11 @@ template <typename T>
 void GatherDrives(const LoadModel& model, const Motion& motion, size_t pose, LoadWorkspace<T>* ws) {
   const CoordinatePartition& partition = model.partition;
   for (size_t k = 0; k < model.drives.size(); ++k) {
-    const auto sample = [&](int lane) { return DriveAt(model, motion, pose + lane, k); };
-    ws->v[partition.driven[k]] = FromLanes<T>([&](int lane) { return sample(lane).velocity; });
-    ws->vdot[partition.driven[k]] =
-        FromLanes<T>([&](int lane) { return sample(lane).acceleration; });
+    const auto part = [&](double MotionSample::*of) {
+      return Prescribed(model, motion, pose, k, of, *ws);
+    };
+    ws->v[partition.driven[k]] = part(&MotionSample::velocity);
+    ws->vdot[partition.driven[k]] = part(&MotionSample::acceleration);
   }
 }
 
@@ -130,7 +151,7 @@ void PositionJoints(const LoadModel& model, const Motion& motion, size_t pose,
       joint.position[k] = FromLanes<T>(
           [&](int lane) { return motion.cut_positions[(pose + lane) * loops + l][k]; });
     }
-    if constexpr (std::is_same_v<T, Dual>) {
+    if constexpr (kIsDual<T>) {
       const Vector3<T> here = CutJointCoordinates(model.tree.loops[l], ws->tree.loops[l]);
       for (int k = 0; k < 3; ++k) joint.position[k].slope = here[k].slope;
     }
@@ -234,10 +255,10 @@ bool EvaluatePoseLoads(const LoadModel& model, const Motion& motion, size_t pose
   if (!kSinglePose<T> && model.has_dry_friction && AnyStands(model, motion, pose, kLanesOf<T>)) {
     return false;
   }
-  GatherCoordinates(motion, pose, ws);
+  GatherCoordinates(model, motion, pose, ws);
   EvaluatePose(model.tree, ws->q.data(), &ws->tree);
   ws->dependents.Factor(ws->tree);
-  if constexpr (std::is_same_v<T, Dual>) CloseSlopes(model, ws);
+  if constexpr (kIsDual<T>) CloseSlopes(model, ws);
   if (!AllLanes(ws->dependents.smallest_pivot() > T(0))) return false;
   ws->closure = LargestLoopError(model.tree, ws->tree);
   if constexpr (kSinglePose<T>) {
@@ -269,6 +290,7 @@ bool EvaluatePoseLoads(const LoadModel& model, const Motion& motion, size_t pose
   template bool EvaluatePoseLoads<T>(const LoadModel&, const Motion&, size_t, LoadWorkspace<T>*);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
+VMECH_INSTANTIATE(Dual4)
 VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)
