@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <type_traits>
 
 #include "vmech/base/eigen.h"
 #include "vmech/base/lanes4.h"
@@ -18,6 +19,10 @@ struct DualOf {
   DualOf() = default;
   DualOf(double constant) : value(constant) {}  // NOLINT: numbers mix with duals
   DualOf(const N& value, const N& slope) : value(value), slope(slope) {}
+  /// The same dual in every lane.
+  template <typename M>
+    requires(!std::is_same_v<M, N>)
+  explicit DualOf(const DualOf<M>& dual) : value(dual.value), slope(dual.slope) {}
 
   /// `number(lane)`, a double or a Dual, in each lane.
   template <typename Number>
@@ -44,6 +49,10 @@ struct DualOf {
   friend DualOf operator/(const DualOf& a, const DualOf& b) {
     const N ratio = a.value / b.value;
     return {ratio, (a.slope - ratio * b.slope) / b.value};
+  }
+  /// Of values and slopes: where Eigen looks for a factor of zero or one.
+  friend bool operator==(const DualOf& a, const DualOf& b) {
+    return a.value == b.value && a.slope == b.slope;
   }
   friend auto operator<(const DualOf& a, const DualOf& b) { return a.value < b.value; }
   friend auto operator>(const DualOf& a, const DualOf& b) { return a.value > b.value; }

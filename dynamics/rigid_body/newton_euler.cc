@@ -20,9 +20,11 @@ ScrewInertiaT<T> InertiaInWorld(const typename TreeInertias<T>::Body& body, cons
           column(1, TripleOf<T>(zero, square, zero)), column(2, TripleOf<T>(zero, zero, square))};
 }
 
-Screw MomentumOf(const TreeInertias<double>::Body& body, const Frame& X, const Screw& V) {
-  const Double4 c = PointInWorld(X, body.p_BoBcm), w_B = InverseRotate(X, V.angular);
-  const Double4 spin_B = w_B[0] * body.Ix + w_B[1] * body.Iy + w_B[2] * body.Iz;
+template <typename T>
+ScrewT<T> MomentumOf(const typename TreeInertias<T>::Body& body, const FrameT<T>& X,
+                     const ScrewT<T>& V) {
+  const Triple<T> c = PointInWorld(X, body.p_BoBcm), w_B = InverseRotate(X, V.angular);
+  const Triple<T> spin_B = w_B[0] * body.Ix + w_B[1] * body.Iy + w_B[2] * body.Iz;
   return WrenchAt(c, body.mass * VelocityAt(c, V), Rotate(X, spin_B));
 }
 
@@ -152,12 +154,13 @@ void GeneralisedForces(const KinematicTree& tree, const TreeWorkspace<T>& ws, T*
   }
 }
 
-void Momenta(const KinematicTree& tree, const TreeInertias<double>& inertias, const double* v,
-             TreeWorkspace<double>* ws, double* momenta) noexcept {
+template <typename T>
+void Momenta(const KinematicTree& tree, const TreeInertias<T>& inertias, const T* v,
+             TreeWorkspace<T>* ws, T* momenta) noexcept {
   ForwardVelocities(tree, v, ws);
   for (size_t i = 1; i < ws->nodes.size(); ++i) {
-    TreeWorkspace<double>::Node& s = ws->nodes[i];
-    s.F = MomentumOf(inertias.in_node[i], s.X, s.V);
+    typename TreeWorkspace<T>::Node& s = ws->nodes[i];
+    s.F = MomentumOf<T>(inertias.in_node[i], s.X, s.V);
   }
   PropagateWrenches(tree, ws, momenta);
 }
@@ -212,7 +215,10 @@ VectorXd BiasForces(const KinematicTree& tree, const VectorXd& q, const VectorXd
                                       TreeWorkspace<T>*) noexcept;                             \
   template void NewtonEuler<T>(const KinematicTree&, const TreeInertias<T>&, const ScrewT<T>*, \
                                TreeWorkspace<T>*, T*) noexcept;                                \
-  template void GeneralisedForces<T>(const KinematicTree&, const TreeWorkspace<T>&, T*) noexcept;
+  template void GeneralisedForces<T>(const KinematicTree&, const TreeWorkspace<T>&, T*)        \
+      noexcept;                                                                                \
+  template void Momenta<T>(const KinematicTree&, const TreeInertias<T>&, const T*,             \
+                           TreeWorkspace<T>*, T*) noexcept;
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
 VMECH_INSTANTIATE(Dual4)

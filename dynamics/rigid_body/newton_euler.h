@@ -77,8 +77,9 @@ template <typename T>
 void GeneralisedForces(const KinematicTree& tree, const TreeWorkspace<T>& ws, T* tau) noexcept;
 /// The joints' momenta M v [nv] at velocities v [nv]: the forces that bring them there from rest in
 /// a second. Needs S; writes V and F. Quicker than to find inertias for this alone.
-void Momenta(const KinematicTree& tree, const TreeInertias<double>& inertias, const double* v,
-             TreeWorkspace<double>* ws, double* momenta) noexcept;
+template <typename T>
+void Momenta(const KinematicTree& tree, const TreeInertias<T>& inertias, const T* v,
+             TreeWorkspace<T>* ws, T* momenta) noexcept;
 
 /// Kinetic energy at V [J].
 double KineticEnergy(const KinematicTree& tree, const TreeInertias<double>& inertias,

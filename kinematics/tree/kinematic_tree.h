@@ -119,11 +119,12 @@ struct Design {
   std::vector<LinkNumbers> links;
   std::vector<JointNumbers> joints;
   Vector3<T> gravity_W;
+
+  template <typename S>
+  Design<S> cast() const;
 };
-template <typename T>
-typename Design<T>::JointNumbers NumbersOf(const Joint& joint);
-template <typename T>
-Design<T> DesignOf(const Mechanism& mechanism);
+Design<double>::JointNumbers NumbersOf(const Joint& joint);
+Design<double> DesignOf(const Mechanism& mechanism);
 
 /// The same as nodes and placements have them: the fields of these names there.
 template <typename T>

@@ -130,7 +130,7 @@ Vector3<T> FrictionLimits(JointType type, const typename Design<T>::JointNumbers
 
 Vector3d FrictionLimits(const Joint& joint, const Wrenchd& W_F, const Vector3d& position,
                         const Vector3d& rate) {
-  return FrictionLimits<double>(joint.type, NumbersOf<double>(joint), W_F, position, rate);
+  return FrictionLimits<double>(joint.type, NumbersOf(joint), W_F, position, rate);
 }
 
 template <typename T>

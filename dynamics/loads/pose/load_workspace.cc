@@ -7,7 +7,7 @@ namespace vmech {
 
 template <typename T>
 LoadWorkspace<T>::LoadWorkspace(const LoadModel& model)
-    : LoadWorkspace(model, DesignOf<T>(model.tree.mechanism), DesignOfTree<T>(model.tree)) {}
+    : LoadWorkspace(model, DesignOf(model.tree.mechanism).template cast<T>(), DesignOfTree<T>(model.tree)) {}
 
 template <typename T>
 LoadWorkspace<T>::LoadWorkspace(const LoadModel& model, const Design<T>& design)
@@ -28,13 +28,13 @@ LoadWorkspace<T>::LoadWorkspace(const LoadModel& model, const Design<T>& design,
       sliding(joints.size(), Vector3<T>::Zero()),
       along(joints.size(), Vector3<T>::Zero()),
       external(model.external.size()),
-      q(VectorX::Zero(model.tree.nq)),
-      v(VectorX::Zero(model.tree.nv)),
-      vdot(VectorX::Zero(model.tree.nv)),
-      tau(VectorX::Zero(model.tree.nv)),
-      passive(VectorX::Zero(model.tree.nv)),
-      open(VectorX::Zero(model.tree.nv)),
-      mu(VectorX::Zero(model.tree.rows)),
+      q(VectorX<T>::Zero(model.tree.nq)),
+      v(VectorX<T>::Zero(model.tree.nv)),
+      vdot(VectorX<T>::Zero(model.tree.nv)),
+      tau(VectorX<T>::Zero(model.tree.nv)),
+      passive(VectorX<T>::Zero(model.tree.nv)),
+      open(VectorX<T>::Zero(model.tree.nv)),
+      mu(VectorX<T>::Zero(model.tree.rows)),
       loads(joints.size(), {{}, Vector3<T>::Zero(), Vector3<T>::Zero(), Vector3<T>::Zero()}),
       drive_forces(model.drives.size(), T(0)) {
   SetGravity(gravity_W, &tree);

@@ -23,8 +23,6 @@ struct RestingContact {
 /// Lanes4 for four in a row, or Dual and Dual4 for these and their derivatives.
 template <typename T>
 struct LoadWorkspace {
-  using VectorX = Eigen::Matrix<T, Eigen::Dynamic, 1>;
-
   explicit LoadWorkspace(const LoadModel& model);
   /// With other numbers than the model's: a Dual that has slopes in some takes the derivative of
   /// every load by them along.
@@ -47,14 +45,14 @@ struct LoadWorkspace {
   /// Per joint: what motors, stops and friction that was found before exert along its freedoms,
   /// beside springs and dampers. Null: nothing.
   const Vector3<T>* exerted = nullptr;
-  VectorX q, v, vdot;
-  VectorX tau;       ///< needed along each freedom
-  VectorX passive;   ///< supplied by springs and friction
-  VectorX open;      ///< what is left for drives and multipliers
-  VectorX mu;        ///< multipliers of the cut joints
+  VectorX<T> q, v, vdot;
+  VectorX<T> tau;    ///< needed along each freedom
+  VectorX<T> passive;   ///< supplied by springs and friction
+  VectorX<T> open;      ///< what is left for drives and multipliers
+  VectorX<T> mu;        ///< multipliers of the cut joints
   /// [nv, independent]: free motions, where the hand or idle freedoms need them
-  Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic> motions;
-  Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic> idle_motions;  ///< [nv, idle]: those of them
+  MatrixX<T> motions;
+  MatrixX<T> idle_motions;  ///< [nv, idle]: those of them
   MatrixXd creep;         ///< [nv, standing drives]: the motion as each of them begins to move
   std::vector<Vector3d> creep_rates;  ///< [standing drives * joints]
   std::vector<RestingContact> resting;
@@ -66,6 +64,9 @@ struct LoadWorkspace {
   std::vector<JointLoad<T>> loads;  ///< per joint
   std::vector<T> drive_forces;
   Wrench<T> hand;         ///< w_d at Go, world axes
+  /// Of duals: how fast the loops open with the parameter as the pose stands still, and how fast
+  /// they do although it goes along, which is nothing where the parameter is free to change.
+  LoopOpening closing, opening;
   double unresisted = 0;  ///< largest force along an idle freedom without inertia [N], [N m]
   T power, power_gap, power_size, closure;  ///< power_gap: of the balance; power_size: its terms
   bool jammed = false;

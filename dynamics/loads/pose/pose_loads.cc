@@ -22,7 +22,9 @@ namespace vmech {
 namespace {
 
 template <typename T>
-constexpr bool kSinglePose = std::is_same_v<T, double>;
+constexpr bool kIsPlain = std::is_same_v<T, double>;  // one pose, without slopes
+template <typename T>
+constexpr bool kIsOnePose = kLanesOf<T> == 1;
 
 /// A part of what drive k prescribes at the poses `pose`, ...; of duals with its slope.
 template <typename T>
@@ -58,8 +60,10 @@ void GatherCoordinates(const LoadModel& model, const Motion& motion, size_t pose
 /// closed pose moves slopes alone (implicit differentiation, C dq = e2).
 template <typename N>
 void CloseSlopes(const LoadModel& model, LoadWorkspace<DualOf<N>>* ws) {
+  ws->closing = LargestOpening(model.tree, ws->tree);
   ws->dependents.StepCoordinates(ws->tree, ws->q.data());
   EvaluatePose(model.tree, ws->q.data(), &ws->tree);
+  ws->opening = LargestOpening(model.tree, ws->tree);
   ws->dependents.Factor(ws->tree);
 }
 
@@ -86,7 +90,7 @@ void CompleteVelocities(const LoadModel& model, LoadWorkspace<T>* ws) {
 /// From the velocities of the freedoms to those of the links.
 template <typename T>
 void MoveLinks(const LoadModel& model, LoadWorkspace<T>* ws) {
-  if constexpr (kSinglePose<T>) {
+  if constexpr (kIsOnePose<T>) {
     if (model.idle > 0) RemoveIdleMomentum(model, ws);
   }
   ForwardVelocities(model.tree, ws->v.data(), &ws->tree);
@@ -95,7 +99,7 @@ void MoveLinks(const LoadModel& model, LoadWorkspace<T>* ws) {
 template <typename T>
 void CloseVelocities(const LoadModel& model, const Motion& motion, size_t pose,
                      LoadWorkspace<T>* ws) {
-  if constexpr (kSinglePose<T>) {
+  if constexpr (kIsPlain<T>) {
     if (model.hand) HandVelocities(model, motion.hand[pose], ws);
   }
   if (!model.hand) CompleteVelocities(model, ws);
@@ -114,7 +118,7 @@ void CloseAccelerations(const LoadModel& model, const Motion& motion, size_t pos
   for (int v : partition.idle) ws->vdot[v] = T(0);
   ws->dependents.CompleteAccelerations(ws->tree, ws->vdot.data());
   ForwardAccelerations(model.tree, ws->vdot.data(), &ws->tree);
-  if constexpr (kSinglePose<T>) {
+  if constexpr (kIsPlain<T>) {
     if (!model.hand) return;
     HandAccelerations(model, motion.hand[pose], ws);
     ForwardAccelerations(model.tree, ws->vdot.data(), &ws->tree);
@@ -186,11 +190,11 @@ template <typename T>
 void FindEquilibrium(const LoadModel& model, LoadWorkspace<T>* ws) {
   for (JointLoad<T>& load : ws->loads) load.W_F = Wrench<T>{};
   EquilibriumPass(model, ws);
-  if constexpr (kSinglePose<T>) {
+  if constexpr (kIsOnePose<T>) {
     if (!model.has_load_friction) return;
     const bool settled =
         ws->friction.Run(model.tree.length, &ws->loads, [&] { EquilibriumPass(model, ws); });
-    ws->locking_joint = LockingJoint(model, *ws, settled);
+    if constexpr (kIsPlain<T>) ws->locking_joint = LockingJoint(model, *ws, settled);
     ws->jammed = !settled || ws->locking_joint >= 0;
   }
 }
@@ -228,13 +232,17 @@ template <typename T>
 void EquilibriumPass(const LoadModel& model, LoadWorkspace<T>* ws) {
   if (model.has_passive) PassiveForces(model, ws);
   LoadTree(model, ws);
-  if constexpr (kSinglePose<T>) {
+  if constexpr (kIsPlain<T>) {
     if (!ws->resting.empty()) {
       HoldByFriction(model, ws);
       SpreadPassive(model, ws);
       LoadTree(model, ws);
     }
+  }
+  if constexpr (kIsOnePose<T>) {
     if (model.idle > 0) SettleIdleFreedoms(model, ws);
+  }
+  if constexpr (kIsPlain<T>) {
     if (model.hand && model.rule != ReactionRule::kPaperJoint) ApplyHandWrench(model, ws);
     if (model.rule == ReactionRule::kPaperJoint) SolvePaperJoint(model, ws);
   }
@@ -252,7 +260,7 @@ bool RunsInLanes(const LoadModel& model) {
 template <typename T>
 bool EvaluatePoseLoads(const LoadModel& model, const Motion& motion, size_t pose,
                        LoadWorkspace<T>* ws) {
-  if (!kSinglePose<T> && model.has_dry_friction && AnyStands(model, motion, pose, kLanesOf<T>)) {
+  if (!kIsPlain<T> && model.has_dry_friction && AnyStands(model, motion, pose, kLanesOf<T>)) {
     return false;
   }
   GatherCoordinates(model, motion, pose, ws);
@@ -261,8 +269,10 @@ bool EvaluatePoseLoads(const LoadModel& model, const Motion& motion, size_t pose
   if constexpr (kIsDual<T>) CloseSlopes(model, ws);
   if (!AllLanes(ws->dependents.smallest_pivot() > T(0))) return false;
   ws->closure = LargestLoopError(model.tree, ws->tree);
-  if constexpr (kSinglePose<T>) {
+  if constexpr (kIsOnePose<T>) {
     if (ws->motions.size() > 0) FindMotions(model, ws);
+  }
+  if constexpr (kIsPlain<T>) {
     if (model.has_dry_friction) FindCreep(model, motion, pose, ws);
   }
   GatherDrives(model, motion, pose, ws);
