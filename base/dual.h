@@ -70,6 +70,10 @@ struct DualOf {
     const N root = sqrt(a.value), zero(0);
     return {root, Select(root > zero, N(N(0.5) * a.slope / root), zero)};
   }
+  friend DualOf pow(const DualOf& a, double exponent) {
+    using std::pow;
+    return {pow(a.value, exponent), exponent * pow(a.value, exponent - 1) * a.slope};
+  }
   friend DualOf round(const DualOf& a) {
     using std::round;
     return {round(a.value), N(0)};

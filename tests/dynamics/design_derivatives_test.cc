@@ -11,7 +11,7 @@
 #include "vmech/dynamics/loads/prepare_study.h"
 #include "vmech/dynamics/loads/run_load_study.h"
 #include "vmech/dynamics/loads/track_motion.h"
-#include "vmech/dynamics/sensitivity/load_slopes.h"
+#include "vmech/dynamics/sensitivity/load_derivatives.h"
 #include "vmech/dynamics/sensitivity/study_change.h"
 
 namespace vmech {
@@ -99,10 +99,11 @@ VectorXd Slopes(const LoadStudy& study, const StudyAt& at) {
   const PreparedStudy prepared = PrepareStudy(study);
   const Motion motion = TrackMotion(study, prepared, kClosed);
   const StudyChange change = ChangeOfStudy(prepared, motion, at, 0, 1e-3);
-  const LoadSlopes slopes = DifferentiateLoads(prepared, motion, change);
-  VectorXd all(slopes.wrenches.size() + slopes.drive_forces.size());
-  all << Eigen::Map<const VectorXd>(slopes.wrenches.data(), slopes.wrenches.size()),
-      Eigen::Map<const VectorXd>(slopes.drive_forces.data(), slopes.drive_forces.size());
+  const LoadDerivatives loads = DifferentiateLoads(prepared, motion, change);
+  VectorXd all(loads.wrenches.size() + loads.drive_forces.size());
+  double* next = all.data();
+  for (const Dual& component : loads.wrenches) *next++ = component.slope;
+  for (const Dual& force : loads.drive_forces) *next++ = force.slope;
   return all;
 }
 

@@ -1,4 +1,4 @@
-#include "vmech/dynamics/sensitivity/load_slopes.h"
+#include "vmech/dynamics/sensitivity/load_derivatives.h"
 
 #include <fmt/format.h>
 
@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "vmech/base/screw_algebra.h"
 #include "vmech/dynamics/loads/load_arrays.h"
 #include "vmech/dynamics/loads/pose/pose_loads.h"
 #include "vmech/dynamics/loads/pose/resting_friction.h"
@@ -17,18 +18,18 @@ namespace {
 /// What a loop is left open by, of what closing it has to move: more than rounding.
 constexpr double kOpens = 1e-7;
 
-double SlopeIn(const Dual& number, int /*lane*/) {
-  return number.slope;
+Dual LaneOf(const Dual& number, int /*lane*/) {
+  return number;
 }
-double SlopeIn(const Dual4& number, int lane) {
-  return number.slope[lane];
+Dual LaneOf(const Dual4& number, int lane) {
+  return {number.value[lane], number.slope[lane]};
 }
 
-/// The slopes of values[0..count) of lane l to row + l * stride.
+/// values[0..count) of lane l to row + l * stride.
 template <typename T>
-void StoreSlopes(const T* values, size_t count, double* row, size_t stride) {
+void StoreDuals(const T* values, size_t count, Dual* row, size_t stride) {
   for (int lane = 0; lane < kLanesOf<T>; ++lane) {
-    for (size_t k = 0; k < count; ++k) row[lane * stride + k] = SlopeIn(values[k], lane);
+    for (size_t k = 0; k < count; ++k) row[lane * stride + k] = LaneOf(values[k], lane);
   }
 }
 
@@ -42,16 +43,21 @@ class Differentiation {
         for (const Dual& p : X.p) size_ = std::max(size_, std::abs(p.slope));
       }
     }
+    result_.first_freedom = {0};
     for (int freedoms : FreedomsOfJoints(model.tree.mechanism)) {
-      first_freedom_.push_back(first_freedom_.back() + freedoms);
+      result_.first_freedom.push_back(result_.first_freedom.back() + freedoms);
     }
-    slopes_.wrenches.resize(motion.size() * 6 * joints());
-    slopes_.drive_forces.resize(motion.size() * model.drives.size());
-    slopes_.positions.resize(motion.size() * freedoms());
-    slopes_.rates.resize(motion.size() * freedoms());
+    for (size_t i = 0; i < motion.size(); ++i) {
+      result_.times.emplace_back(motion.times[i], change.prescribed.times[i]);
+    }
+    result_.wrenches.resize(motion.size() * 6 * joints());
+    result_.drive_forces.resize(motion.size() * model.drives.size());
+    result_.rates.resize(motion.size() * freedoms());
+    result_.ground_forces.resize(motion.size() * 3);
+    result_.grasps.resize(motion.size() * 3 * model.tree.mechanism.grasps.size());
   }
 
-  LoadSlopes Run() {
+  LoadDerivatives Run() {
     LoadWorkspace<Dual> one = MakeWorkspace<Dual>();
     LoadWorkspace<Dual4> four = MakeWorkspace<Dual4>();
     const size_t poses = motion_.size();
@@ -66,13 +72,13 @@ class Differentiation {
         Refuse(i);
       }
     }
-    return std::move(slopes_);
+    return std::move(result_);
   }
 
  private:
   static constexpr size_t Dual4Lanes() { return kLanesOf<Dual4>; }
   size_t joints() const { return model_.tree.mechanism.joints.size(); }
-  size_t freedoms() const { return static_cast<size_t>(first_freedom_.back()); }
+  size_t freedoms() const { return static_cast<size_t>(result_.first_freedom.back()); }
 
   template <typename T>
   LoadWorkspace<T> MakeWorkspace() const {
@@ -109,18 +115,42 @@ class Differentiation {
   template <typename T>
   void Store(size_t pose, const LoadWorkspace<T>& ws) {
     const size_t drives = model_.drives.size();
-    StoreSlopes(ws.drive_forces.data(), drives, slopes_.drive_forces.data() + drives * pose,
-                drives);
+    StoreDuals(ws.drive_forces.data(), drives, result_.drive_forces.data() + drives * pose, drives);
     for (size_t j = 0; j < joints(); ++j) {
       const JointLoad<T>& load = ws.loads[j];
-      const auto first = static_cast<size_t>(first_freedom_[j]);
-      const size_t count = static_cast<size_t>(first_freedom_[j + 1]) - first;
-      const size_t at = freedoms() * pose + first;
-      StoreSlopes(load.W_F.Stacked().data(), 6, slopes_.wrenches.data() + 6 * (joints() * pose + j),
-                  6 * joints());
-      StoreSlopes(load.position.data(), count, slopes_.positions.data() + at, freedoms());
-      StoreSlopes(load.rate.data(), count, slopes_.rates.data() + at, freedoms());
+      const auto first = static_cast<size_t>(result_.first_freedom[j]);
+      const size_t count = static_cast<size_t>(result_.first_freedom[j + 1]) - first;
+      StoreDuals(load.W_F.Stacked().data(), 6, &result_.wrenches[6 * (joints() * pose + j)],
+                 6 * joints());
+      StoreDuals(load.rate.data(), count, result_.rates.data() + freedoms() * pose + first,
+                 freedoms());
     }
+    StoreDuals(GroundForce(ws).data(), 3, &result_.ground_forces[3 * pose], 3);
+    const std::vector<Grasp>& grasps = model_.tree.mechanism.grasps;
+    for (size_t g = 0; g < grasps.size(); ++g) {
+      StoreDuals(OriginOf(grasps[g], ws).data(), 3, &result_.grasps[3 * (grasps.size() * pose + g)],
+                 3 * grasps.size());
+    }
+  }
+
+  template <typename T>
+  Vector3<T> GroundForce(const LoadWorkspace<T>& ws) const {
+    const Mechanism& mechanism = model_.tree.mechanism;
+    Vector3<T> force = Vector3<T>::Zero();
+    for (size_t j = 0; j < joints(); ++j) {
+      const Vector3<T> on_second = Vector3Of(ws.joints[j].W.linear);
+      if (mechanism.joints[j].first.link == mechanism.ground) force += on_second;
+      if (mechanism.joints[j].second.link == mechanism.ground) force -= on_second;
+    }
+    return force;
+  }
+
+  template <typename T>
+  Vector3<T> OriginOf(const Grasp& grasp, const LoadWorkspace<T>& ws) const {
+    const int node = model_.tree.NodeOfLink(grasp.link);
+    const FrameT<T> X_WL = ws.tree.at(node).X * ws.tree.at(node).X_BL;
+    const Vector3<T> p = Vector3Of(PointInWorld(X_WL, TripleOf<T>(grasp.X_LG.p.cast<T>())));
+    return p + ws.tree.reference.template cast<T>();
   }
 
   [[noreturn]] void Refuse(size_t pose) const {
@@ -136,13 +166,12 @@ class Differentiation {
   const Motion& motion_;
   const StudyChange& change_;
   double size_ = 0;  ///< largest slope of an anchor's coordinate
-  std::vector<int> first_freedom_{0};
-  LoadSlopes slopes_;
+  LoadDerivatives result_;
 };
 
 }  // namespace
 
-std::string ReasonAgainstSlopes(const LoadModel& model) {
+std::string ReasonAgainstDerivatives(const LoadModel& model) {
   if (model.hand) return "a hand drives: give the mechanism a drive at a joint";
   if (model.rule == ReactionRule::kPaperJoint) {
     return "the rule 'paper_joint' has no derivative: take 'stiffness' or 'minimum_norm'";
@@ -150,9 +179,9 @@ std::string ReasonAgainstSlopes(const LoadModel& model) {
   return "";
 }
 
-LoadSlopes DifferentiateLoads(const PreparedStudy& prepared, const Motion& motion,
+LoadDerivatives DifferentiateLoads(const PreparedStudy& prepared, const Motion& motion,
                               const StudyChange& change) {
-  const std::string reason = ReasonAgainstSlopes(prepared.model);
+  const std::string reason = ReasonAgainstDerivatives(prepared.model);
   if (!reason.empty()) throw std::invalid_argument("the loads are not differentiated: " + reason);
   return Differentiation(prepared.model, motion, change).Run();
 }
