@@ -91,6 +91,14 @@ T Hours(const T& life, const T& speed) {
   return life * kRevolutionsPerMillion * 2 * std::numbers::pi / speed / kSecondsPerHour;
 }
 
+template <typename T>
+T LifeTogether(std::span<const T> lives, double weibull_slope) {
+  using std::pow;
+  T sum(0);
+  for (const T& L : lives) sum += pow(L, -weibull_slope);
+  return sum > T(0) ? T(pow(sum, -1 / weibull_slope)) : T(kInfinity);
+}
+
 }  // namespace
 
 AxialFactors DeepGrooveFactors(double relative_axial_load) {
@@ -151,9 +159,11 @@ double ReliabilityFactor(double reliability) {
 }
 
 double SystemLife(std::span<const double> lives, double weibull_slope) {
-  double sum = 0;
-  for (double L : lives) sum += std::pow(L, -weibull_slope);
-  return sum > 0 ? std::pow(sum, -1 / weibull_slope) : kInfinity;
+  return LifeTogether(lives, weibull_slope);
+}
+
+Dual SystemLife(std::span<const Dual> lives, double weibull_slope) {
+  return LifeTogether(lives, weibull_slope);
 }
 
 }  // namespace vmech

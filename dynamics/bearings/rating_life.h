@@ -60,5 +60,6 @@ double ReliabilityFactor(double reliability);
 /// L = (sum L_i^-e)^(-1/e): the life of several bearings that must all survive, at the reliability
 /// at which the L_i are given; e is the Weibull slope.
 double SystemLife(std::span<const double> lives, double weibull_slope);
+Dual SystemLife(std::span<const Dual> lives, double weibull_slope);
 
 }  // namespace vmech
