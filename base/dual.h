@@ -4,13 +4,13 @@
 #include <type_traits>
 
 #include "vmech/base/eigen.h"
-#include "vmech/base/lanes4.h"
+#include "vmech/base/lanes.h"
 
 namespace vmech {
 
 /// A number and its derivative by one parameter. As the number T of the kernels it takes a
 /// derivative through the same lines as the value: exact to rounding, where differences of values
-/// lose half of the digits. Comparisons look at the values. N is double, or Lanes4 for four poses.
+/// lose half of the digits. Comparisons look at the values. N is double, or Lanes4 (lanes4.h).
 template <typename N>
 struct DualOf {
   N value = 0;
@@ -21,8 +21,8 @@ struct DualOf {
   DualOf(const N& value, const N& slope) : value(value), slope(slope) {}
   /// The same dual in every lane.
   template <typename M>
-    requires(!std::is_same_v<M, N>)
-  explicit DualOf(const DualOf<M>& dual) : value(dual.value), slope(dual.slope) {}
+  requires(!std::is_same_v<M, N>) explicit DualOf(const DualOf<M>& dual)
+      : value(dual.value), slope(dual.slope) {}
 
   /// `number(lane)`, a double or a Dual, in each lane.
   template <typename Number>
@@ -93,15 +93,14 @@ struct DualOf {
 };
 
 using Dual = DualOf<double>;
-using Dual4 = DualOf<Lanes4>;  ///< four poses, and the derivative of each
 
 template <typename T>
 inline constexpr bool kIsDual = false;
 template <typename N>
 inline constexpr bool kIsDual<DualOf<N>> = true;
 
-template <>
-inline constexpr int kLanesOf<Dual4> = Lanes4::kLanes;
+template <typename N>
+inline constexpr int kLanesOf<DualOf<N>> = kLanesOf<N>;
 template <typename N>
 double Lane(const DualOf<N>& number, int lane) {
   return Lane(number.value, lane);
@@ -134,14 +133,4 @@ struct Eigen::ScalarBinaryOpTraits<double, vmech::DualOf<N>, Operation> {
 template <typename N, typename Operation>
 struct Eigen::ScalarBinaryOpTraits<vmech::DualOf<N>, double, Operation> {
   using ReturnType = vmech::DualOf<N>;
-};
-
-// As those of Lanes4.
-template <int size>
-struct Eigen::internal::compute_default_alignment<vmech::Dual4, size> {
-  enum { value = 0 };
-};
-template <>
-struct Eigen::internal::compute_default_alignment<vmech::Dual4, Eigen::Dynamic> {
-  enum { value = EIGEN_MAX_ALIGN_BYTES };
 };

@@ -10,9 +10,10 @@
 #include <stdexcept>
 
 #include "vmech/dynamics/bearings/life_slope.h"
+#include "vmech/dynamics/bearings/rating_life.h"
 #include "vmech/dynamics/loads/load_peaks.h"
 #include "vmech/dynamics/loads/open_components.h"
-#include "vmech/dynamics/bearings/rating_life.h"
+#include "vmech/mechanisms/freedoms.h"
 #include "vmech/studies/read_motion.h"
 
 namespace vmech {
@@ -25,8 +26,17 @@ Dual Size(const Dual* v) {
   return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
+/// The moment about the axes that a joint does not leave free: without what its drive exerts.
+Dual HeldMoment(JointType type, const Dual* moment) {
+  const std::array<bool, 6>& free = FreedomsOfType(type).free;
+  Dual held[3];
+  for (int k = 0; k < 3; ++k) held[k] = free[3 + k] ? Dual(0) : moment[k];
+  return Size(held);
+}
+
 /// What a figure is at every pose; empty for those that are no course.
-std::vector<Dual> CourseOf(const Figure& figure, const LoadDerivatives& loads) {
+std::vector<Dual> CourseOf(const Figure& figure, const Mechanism& mechanism,
+                           const LoadDerivatives& loads) {
   std::vector<Dual> course;
   const auto index = static_cast<size_t>(figure.index);
   for (size_t i = 0; i < loads.poses(); ++i) {
@@ -35,11 +45,12 @@ std::vector<Dual> CourseOf(const Figure& figure, const LoadDerivatives& loads) {
         course.push_back(Size(&loads.wrenches[6 * (i * loads.joints() + index)]));
         break;
       case FigureKind::kMoment:
-        course.push_back(Size(&loads.wrenches[6 * (i * loads.joints() + index) + 3]));
+        course.push_back(HeldMoment(mechanism.joints[index].type,
+                                    &loads.wrenches[6 * (i * loads.joints() + index) + 3]));
         break;
       case FigureKind::kDrive:
-        course.push_back(abs(loads.drive_forces[i * loads.drive_forces.size() / loads.poses() +
-                                                index]));
+        course.push_back(
+            abs(loads.drive_forces[i * loads.drive_forces.size() / loads.poses() + index]));
         break;
       case FigureKind::kGroundForce:
         course.push_back(Size(&loads.ground_forces[3 * i]));
@@ -155,9 +166,12 @@ void AddJointFigures(const StudyFile& file, const StudyOutcome& outcome,
     const std::string& name = mechanism.joints[j].name;
     const auto index = static_cast<int>(j);
     if (peaks.components[j].head<3>().norm() > kNothing * peaks.force) {
-      figures->push_back({FigureKind::kForce, index, Reduction::kPeak, NameWith(name, "force"), "N"});
+      figures->push_back(
+          {FigureKind::kForce, index, Reduction::kPeak, NameWith(name, "force"), "N"});
     }
-    if (peaks.components[j].tail<3>().norm() > kNothing * peaks.force * length) {
+    Dual moment[3];
+    for (int k = 0; k < 3; ++k) moment[k] = peaks.components[j][3 + k];
+    if (HeldMoment(mechanism.joints[j].type, moment).value > kNothing * peaks.force * length) {
       figures->push_back(
           {FigureKind::kMoment, index, Reduction::kPeak, NameWith(name, "moment"), "N m"});
     }
@@ -257,11 +271,11 @@ Dual ValueOf(const Figure& figure, const StudyFile& file, const StudyOutcome& ou
              const StudyChange& change, const LoadDerivatives& loads) {
   if (figure.kind == FigureKind::kMass) return MassOf(file, change);
   if (figure.kind == FigureKind::kLife) return LifeOf(figure, file, outcome, change, loads);
-  return Reduce(CourseOf(figure, loads), figure.reduction);
+  return Reduce(CourseOf(figure, file.study.mechanism, loads), figure.reduction);
 }
 
-int PeakPose(const Figure& figure, const LoadDerivatives& loads) {
-  const std::vector<Dual> course = CourseOf(figure, loads);
+int PeakPose(const Figure& figure, const StudyFile& file, const LoadDerivatives& loads) {
+  const std::vector<Dual> course = CourseOf(figure, file.study.mechanism, loads);
   if (course.empty() || figure.reduction != Reduction::kPeak) return -1;
   return static_cast<int>(LargestAt(course));
 }

@@ -9,13 +9,13 @@
 namespace vmech {
 
 enum class FigureKind {
-  kForce,         ///< of a joint: the size of its force [N]
-  kMoment,        ///< of a joint: the size of its moment [N m]
-  kDrive,         ///< of a drive: the size of its force [N] or [N m]
-  kGroundForce,   ///< the size of the sum of all forces on the ground [N]
-  kLife,          ///< L_nh of the bearings that a joint has got, together [h]
-  kMass,          ///< of all links but the ground [kg]
-  kPathError,     ///< distance of a grasp from where a table wants it [m]
+  kForce,        ///< of a joint: the size of its force [N]
+  kMoment,       ///< of a joint: the size of the moment that it holds, across its freedoms [N m]
+  kDrive,        ///< of a drive: the size of its force [N] or [N m]
+  kGroundForce,  ///< the size of the sum of all forces on the ground [N]
+  kLife,         ///< L_nh of the bearings that a joint has got, together [h]
+  kMass,         ///< of all links but the ground [kg]
+  kPathError,    ///< distance of a grasp from where a table wants it [m]
 };
 
 /// How a course over the poses becomes one number.
@@ -54,6 +54,6 @@ Dual ValueOf(const Figure& figure, const StudyFile& file, const StudyOutcome& ou
              const StudyChange& change, const LoadDerivatives& loads);
 
 /// The pose at which a peak is reached; -1 for what is no peak.
-int PeakPose(const Figure& figure, const LoadDerivatives& loads);
+int PeakPose(const Figure& figure, const StudyFile& file, const LoadDerivatives& loads);
 
 }  // namespace vmech

@@ -28,12 +28,12 @@ class Differentiator {
 
   /// The values of the figures, which depend on no parameter.
   void Evaluate() {
-    const StudyChange still =
-        ChangeOfStudy(prepared_, motion_, [this](double) { return file_.study; }, 0, 1);
+    const StudyChange still = ChangeOfStudy(
+        prepared_, motion_, [this](double) { return file_.study; }, 0, 1);
     const LoadDerivatives loads = DifferentiateLoads(prepared_, motion_, still);
     for (FigureSlopes& f : result_.figures) {
       f.value = ValueOf(f.figure, file_, outcome_, still, loads).value;
-      f.pose = PeakPose(f.figure, loads);
+      f.pose = PeakPose(f.figure, file_, loads);
     }
   }
 
@@ -69,8 +69,7 @@ double FigureSlopes::Elasticity(size_t parameter, const StudyParameter& of) cons
 }
 
 Sensitivities FindSensitivities(const StudyFile& file, const StudyOutcome& outcome,
-                                std::vector<Figure> figures,
-                                std::vector<StudyParameter> parameters,
+                                std::vector<Figure> figures, std::vector<StudyParameter> parameters,
                                 const SensitivityOptions& options) {
   if (file.simulation) {
     throw std::invalid_argument(

@@ -36,8 +36,7 @@ struct Sensitivities {
 /// @throws std::invalid_argument for a simulation, a hand as the drive or the rule `paper_joint`;
 /// what the study itself throws.
 Sensitivities FindSensitivities(const StudyFile& file, const StudyOutcome& outcome,
-                                std::vector<Figure> figures,
-                                std::vector<StudyParameter> parameters,
+                                std::vector<Figure> figures, std::vector<StudyParameter> parameters,
                                 const SensitivityOptions& options = {});
 
 }  // namespace vmech

@@ -43,9 +43,8 @@ class Dimensions {
     Add(link.name + ".mass", "kg", 1, link.mass_properties.mass,
         [l](Mechanism* m) -> double& { return m->links[l].mass_properties.mass; });
     for (int k = 0; k < 3; ++k) {
-      AddLength(fmt::format("{}.cog.{}", link.name, kAxes[k]), [l, k](Mechanism* m) -> double& {
-        return m->links[l].mass_properties.p_LoLcm[k];
-      });
+      AddLength(fmt::format("{}.center_of_gravity.{}", link.name, kAxes[k]),
+                [l, k](Mechanism* m) -> double& { return m->links[l].mass_properties.p_LoLcm[k]; });
     }
   }
 
@@ -97,8 +96,8 @@ StudyParameter FindParameter(const std::vector<StudyParameter>& known, const std
     if (parameter.name == name) return parameter;
     names.push_back(parameter.name);
   }
-  throw std::invalid_argument(fmt::format("there is no parameter '{}'; there are {}", name,
-                                          fmt::join(names, ", ")));
+  throw std::invalid_argument(
+      fmt::format("there is no parameter '{}'; there are {}", name, fmt::join(names, ", ")));
 }
 
 }  // namespace vmech

@@ -41,6 +41,7 @@ const KindOfResult& Describe(ResultKind kind) {
         "bearings.csv", "summary.json", "report.html"},
        nullptr},
       {"vmech compare", {"results.csv", "summary.json", "report.html"}, "rows.jsonl"},
+      {"vmech sensitivities", {"sensitivities.csv", "report.html"}, nullptr},
   };
   return kKinds[static_cast<int>(kind)];
 }
@@ -171,8 +172,8 @@ void ResultFolder::LockTarget() {
 /// Nothing is replaced that is not a result of the same kind.
 void ResultFolder::RefuseOthers() const {
   const KindOfResult& mine = Describe(kind_);
-  for (const ResultKind other :
-       {ResultKind::kLoads, ResultKind::kSimulation, ResultKind::kComparison}) {
+  for (const ResultKind other : {ResultKind::kLoads, ResultKind::kSimulation,
+                                 ResultKind::kComparison, ResultKind::kSensitivities}) {
     if (other == kind_) continue;
     const KindOfResult& kind = Describe(other);
     // A simulation's set holds one of loads.

@@ -61,8 +61,7 @@ ArrangementLoads DistributeLoads(const Arrangement& arrangement,
     for (size_t k = 0; k < z.size(); ++k) loads.forces[k][i].force = shares[k];
     if (z.size() == 2) continue;
     // m - z_a e_z x f: the moment about the only bearing.
-    const Vector3d m_a =
-        wrenches[i].moment - z[0] * Vector3d::UnitZ().cross(wrenches[i].force);
+    const Vector3d m_a = wrenches[i].moment - z[0] * Vector3d::UnitZ().cross(wrenches[i].force);
     loads.tilting_moment[i] = std::hypot(m_a.x(), m_a.y());
   }
   return loads;

@@ -26,9 +26,8 @@ Dual LifeHours(const Bearing& bearing, const Arrangement& arrangement, size_t po
     path += abs(duty.speed[i]) * duty.duration[i];
     time += duty.duration[i];
   }
-  const Dual mean = MeanEffectiveLoad(std::span<const Dual>(loads),
-                                      std::span<const Dual>(revolutions),
-                                      LifeExponent(bearing.kind));
+  const Dual mean = MeanEffectiveLoad(
+      std::span<const Dual>(loads), std::span<const Dual>(revolutions), LifeExponent(bearing.kind));
   const Dual life = BasicRatingLife(bearing.dynamic_rating, mean, bearing.kind);
   return ReliabilityFactor(reliability) * HoursOf(life, path / time);
 }

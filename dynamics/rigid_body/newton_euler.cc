@@ -205,19 +205,18 @@ VectorXd BiasForces(const KinematicTree& tree, const VectorXd& q, const VectorXd
 }
 
 // NOLINTBEGIN(bugprone-macro-parentheses): T is a type
-#define VMECH_INSTANTIATE(T)                                                                   \
-  template struct TreeInertias<T>;                                                             \
-  template void SetGravity<T>(const std::type_identity_t<Vector3<T>>&, TreeWorkspace<T>*)      \
-      noexcept;                                                                                \
-  template void BodyInertias<T>(const KinematicTree&, const TreeWorkspace<T>&,                 \
-                                TreeInertias<T>*) noexcept;                                    \
-  template void GyroscopicWrenches<T>(const KinematicTree&, const TreeInertias<T>&,            \
-                                      TreeWorkspace<T>*) noexcept;                             \
-  template void NewtonEuler<T>(const KinematicTree&, const TreeInertias<T>&, const ScrewT<T>*, \
-                               TreeWorkspace<T>*, T*) noexcept;                                \
-  template void GeneralisedForces<T>(const KinematicTree&, const TreeWorkspace<T>&, T*)        \
-      noexcept;                                                                                \
-  template void Momenta<T>(const KinematicTree&, const TreeInertias<T>&, const T*,             \
+#define VMECH_INSTANTIATE(T)                                                                      \
+  template struct TreeInertias<T>;                                                                \
+  template void SetGravity<T>(const std::type_identity_t<Vector3<T>>&,                            \
+                              TreeWorkspace<T>*) noexcept;                                        \
+  template void BodyInertias<T>(const KinematicTree&, const TreeWorkspace<T>&,                    \
+                                TreeInertias<T>*) noexcept;                                       \
+  template void GyroscopicWrenches<T>(const KinematicTree&, const TreeInertias<T>&,               \
+                                      TreeWorkspace<T>*) noexcept;                                \
+  template void NewtonEuler<T>(const KinematicTree&, const TreeInertias<T>&, const ScrewT<T>*,    \
+                               TreeWorkspace<T>*, T*) noexcept;                                   \
+  template void GeneralisedForces<T>(const KinematicTree&, const TreeWorkspace<T>&, T*) noexcept; \
+  template void Momenta<T>(const KinematicTree&, const TreeInertias<T>&, const T*,                \
                            TreeWorkspace<T>*, T*) noexcept;
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)

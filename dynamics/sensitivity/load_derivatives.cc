@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "vmech/base/dual.h"
+#include "vmech/base/lanes4.h"
 #include "vmech/base/screw_algebra.h"
 #include "vmech/dynamics/loads/load_arrays.h"
 #include "vmech/dynamics/loads/pose/pose_loads.h"
@@ -105,11 +107,12 @@ class Differentiation {
     // What changes all sizes alike moves no loop but in the rounding of its slopes.
     const double moved = std::max(ws.closing.slope, size_ / model_.tree.length);
     if (ws.opening.slope <= std::max(kOpens * moved, change_.rounding)) return;
-    throw std::runtime_error(fmt::format(
-        "the loop that is cut at '{}' cannot stay closed when this changes (pose {}, t = {:.6g} s): "
-        "the mechanism moves, or can be assembled, for this value alone",
-        model_.tree.mechanism.joints[model_.tree.loops[ws.opening.loop].joint].name, pose,
-        motion_.times[pose]));
+    throw std::runtime_error(
+        fmt::format("the loop that is cut at '{}' cannot stay closed when this changes (pose {}, t "
+                    "= {:.6g} s): "
+                    "the mechanism moves, or can be assembled, for this value alone",
+                    model_.tree.mechanism.joints[model_.tree.loops[ws.opening.loop].joint].name,
+                    pose, motion_.times[pose]));
   }
 
   template <typename T>
@@ -180,7 +183,7 @@ std::string ReasonAgainstDerivatives(const LoadModel& model) {
 }
 
 LoadDerivatives DifferentiateLoads(const PreparedStudy& prepared, const Motion& motion,
-                              const StudyChange& change) {
+                                   const StudyChange& change) {
   const std::string reason = ReasonAgainstDerivatives(prepared.model);
   if (!reason.empty()) throw std::invalid_argument("the loads are not differentiated: " + reason);
   return Differentiation(prepared.model, motion, change).Run();

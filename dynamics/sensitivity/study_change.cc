@@ -157,10 +157,11 @@ StudyChange ChangeOfStudy(const PreparedStudy& prepared, const Motion& motion, c
     numbers[k] = NumbersOfStudy(study);
     stiffnesses[k] = StiffnessesOf(study);
     if (numbers[k].size() == count && stiffnesses[k].size() == stiffnesses[0].size()) continue;
-    throw std::invalid_argument(fmt::format(
-        "at {:.6g} the study has another form than at {:.6g} ({} numbers, not {}): a parameter that "
-        "changes how many poses, rows or parts there are has no derivative",
-        value + kSteps[k] * step, value, numbers[k].size(), count));
+    throw std::invalid_argument(
+        fmt::format("at {:.6g} the study has another form than at {:.6g} ({} numbers, not {}): a "
+                    "parameter that "
+                    "changes how many poses, rows or parts there are has no derivative",
+                    value + kSteps[k] * step, value, numbers[k].size(), count));
   }
   Spread(FivePointSlopes(numbers, step), &change);
   constexpr double kRounding = 1e-13;  // of numbers of order 1, and of coordinates some turns away

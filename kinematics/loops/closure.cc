@@ -193,11 +193,11 @@ T CloseByNewton(const KinematicTree& tree, double tolerance, int max_steps,
 }
 
 // NOLINTBEGIN(bugprone-macro-parentheses): T is a type
-#define VMECH_INSTANTIATE(T)                                                              \
-  template class DependentSolver<T>;                                                      \
+#define VMECH_INSTANTIATE(T)                                                               \
+  template class DependentSolver<T>;                                                       \
   template void FreeMotions<T>(const TreeWorkspace<T>&, DependentSolver<T>*, MatrixX<T>*); \
-  template void EvaluatePose<T>(const KinematicTree&, const T*, TreeWorkspace<T>*, bool); \
-  template T CloseByNewton<T>(const KinematicTree&, double, int, DependentSolver<T>*,     \
+  template void EvaluatePose<T>(const KinematicTree&, const T*, TreeWorkspace<T>*, bool);  \
+  template T CloseByNewton<T>(const KinematicTree&, double, int, DependentSolver<T>*,      \
                               TreeWorkspace<T>*, T*);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)

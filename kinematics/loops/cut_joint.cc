@@ -12,8 +12,7 @@ namespace {
 template <typename N>
 Vector3<DualOf<N>> RotationVector(const Matrix3<DualOf<N>>& R) {
   using T = DualOf<N>;
-  const Vector3<T> sine =
-      0.5 * Vector3<T>(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));
+  const Vector3<T> sine = 0.5 * Vector3<T>(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));
   const T cosine = 0.5 * (R.trace() - 1.0), square = sine.squaredNorm(), zero(0);
   const T size = sqrt(square);
   return Select(square > zero, T(atan2(size, cosine) / size), T(1)) * sine;

@@ -234,7 +234,8 @@ TreeDesign<T> DesignOfTree(const KinematicTree& tree, const Design<T>& design) {
   }
   for (size_t j = 0; j < tree.mechanism.joints.size(); ++j) {
     const Joint& joint = tree.mechanism.joints[j];
-    placed.placements.push_back({in_node(joint.first), in_node(joint.second), design.joints[j].pitch});
+    placed.placements.push_back(
+        {in_node(joint.first), in_node(joint.second), design.joints[j].pitch});
   }
   return placed;
 }

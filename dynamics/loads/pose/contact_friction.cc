@@ -222,11 +222,10 @@ std::array<UnaccountedLoad, 2> UnaccountedLoads(const Joint& joint, const Wrench
 }
 
 // NOLINTBEGIN(bugprone-macro-parentheses): T is a type
-#define VMECH_INSTANTIATE(T)                                                               \
-  template Vector3<T> FrictionLimits<T>(JointType, const typename Design<T>::JointNumbers&, \
-                                        const Wrench<T>&, const Vector3<T>&,               \
-                                        const Vector3<T>&);                                \
-  template Vector3<T> SlidingRates<T>(JointType, const Vector3<T>&, double, double);       \
+#define VMECH_INSTANTIATE(T)                                                                     \
+  template Vector3<T> FrictionLimits<T>(JointType, const typename Design<T>::JointNumbers&,      \
+                                        const Wrench<T>&, const Vector3<T>&, const Vector3<T>&); \
+  template Vector3<T> SlidingRates<T>(JointType, const Vector3<T>&, double, double);             \
   template Vector3<T> SlidingFriction<T>(JointType, const Vector3<T>&, const Vector3<T>&);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)

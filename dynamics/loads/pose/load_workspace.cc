@@ -7,7 +7,8 @@ namespace vmech {
 
 template <typename T>
 LoadWorkspace<T>::LoadWorkspace(const LoadModel& model)
-    : LoadWorkspace(model, DesignOf(model.tree.mechanism).template cast<T>(), DesignOfTree<T>(model.tree)) {}
+    : LoadWorkspace(model, DesignOf(model.tree.mechanism).template cast<T>(),
+                    DesignOfTree<T>(model.tree)) {}
 
 template <typename T>
 LoadWorkspace<T>::LoadWorkspace(const LoadModel& model, const Design<T>& design)

@@ -46,14 +46,14 @@ struct LoadWorkspace {
   /// beside springs and dampers. Null: nothing.
   const Vector3<T>* exerted = nullptr;
   VectorX<T> q, v, vdot;
-  VectorX<T> tau;    ///< needed along each freedom
-  VectorX<T> passive;   ///< supplied by springs and friction
-  VectorX<T> open;      ///< what is left for drives and multipliers
-  VectorX<T> mu;        ///< multipliers of the cut joints
+  VectorX<T> tau;      ///< needed along each freedom
+  VectorX<T> passive;  ///< supplied by springs and friction
+  VectorX<T> open;     ///< what is left for drives and multipliers
+  VectorX<T> mu;       ///< multipliers of the cut joints
   /// [nv, independent]: free motions, where the hand or idle freedoms need them
   MatrixX<T> motions;
   MatrixX<T> idle_motions;  ///< [nv, idle]: those of them
-  MatrixXd creep;         ///< [nv, standing drives]: the motion as each of them begins to move
+  MatrixXd creep;           ///< [nv, standing drives]: the motion as each of them begins to move
   std::vector<Vector3d> creep_rates;  ///< [standing drives * joints]
   std::vector<RestingContact> resting;
   VectorXd holding;  ///< [standing drives] y of resting_friction.h
@@ -63,7 +63,7 @@ struct LoadWorkspace {
   // What comes out, beside `tree`.
   std::vector<JointLoad<T>> loads;  ///< per joint
   std::vector<T> drive_forces;
-  Wrench<T> hand;         ///< w_d at Go, world axes
+  Wrench<T> hand;  ///< w_d at Go, world axes
   /// Of duals: how fast the loops open with the parameter as the pose stands still, and how fast
   /// they do although it goes along, which is nothing where the parameter is free to change.
   LoopOpening closing, opening;
@@ -72,6 +72,7 @@ struct LoadWorkspace {
   bool jammed = false;
   int locking_joint = -1;
   bool held_by_friction = false;
+
  private:
   LoadWorkspace(const LoadModel& model, const Design<T>& design, const TreeDesign<T>& placed);
 };

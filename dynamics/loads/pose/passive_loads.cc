@@ -37,7 +37,8 @@ void PassiveForces(const LoadModel& model, LoadWorkspace<T>* ws) {
     const typename Design<T>::JointNumbers& numbers = ws->numbers[j];
     ws->along[j].setZero();
     if (HasDryFriction(joint)) {
-      const Vector3<T> limits = FrictionLimits<T>(joint.type, numbers, load.W_F, load.position, ws->sliding[j]);
+      const Vector3<T> limits =
+          FrictionLimits<T>(joint.type, numbers, load.W_F, load.position, ws->sliding[j]);
       ws->along[j] = SlidingFriction(joint.type, limits, ws->sliding[j]);
     }
     for (int k = 0; k < static_cast<int>(joint.passive.size()); ++k) {

@@ -172,7 +172,7 @@ std::vector<HeldContact> Contacts::HeldContacts(const ConstrainedMotion& motion,
     const auto [first, count] = friction.freedoms;
     const JointLoad<double>& load = motion.ws().loads[friction.joint];
     const Vector3d limits = FrictionLimits(tree_.mechanism.joints[friction.joint], load.W_F,
-                                                   load.position, Vector3d::Zero());
+                                           load.position, Vector3d::Zero());
     HeldContact contact{HeldContact::Kind::kFriction, row, count};
     contact.limits.head(count) = limits.segment(first, count);
     held.push_back(contact);
