@@ -342,6 +342,7 @@ struct Arguments {
   vmech::CheckArguments check;
   vmech::LoadsArguments loads, simulated;
   vmech::SensitivityArguments sensitivities;
+  vmech::OptimiseArguments optimise;
   vmech::CompareArguments compare;
   vmech::IkArguments ik;
   vmech::HapticArguments haptic;
@@ -362,6 +363,7 @@ void AddCommands(CLI::App* app, Arguments* arguments) {
   AddStudyOptions(app->add_subcommand("simulate", kSimulateHelp), "simulate",
                   &arguments->simulated);
   vmech::AddSensitivities(app, &arguments->sensitivities);
+  vmech::AddOptimise(app, &arguments->optimise);
   AddCompare(app, &arguments->compare);
   app->add_subcommand("import",
                       "Makes a mechanism file of a CAD assembly, SDFormat or URDF; see `vmech "
@@ -389,6 +391,7 @@ int RunCommand(const CLI::App& app, const Arguments& arguments) {
   if (app.got_subcommand("loads")) return RunLoads(arguments.loads);
   if (app.got_subcommand("simulate")) return RunSimulate(arguments.simulated);
   if (app.got_subcommand("sensitivities")) return RunSensitivities(arguments.sensitivities);
+  if (app.got_subcommand("optimise")) return RunOptimise(arguments.optimise);
   if (app.got_subcommand("ik")) return RunIk(arguments.ik);
   if (app.got_subcommand("haptic")) return RunHaptic(arguments.haptic);
   if (app.got_subcommand("replay")) return RunReplay(arguments.replay);

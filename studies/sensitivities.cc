@@ -40,7 +40,11 @@ class Differentiator {
   void Differentiate(size_t p) {
     try {
       const StudyParameter& parameter = result_.parameters[p];
-      const auto at = [&](double value) { return parameter.at(value).study; };
+      const auto at = [&](double value) {
+        StudyFile changed = file_;
+        parameter.put(value, &changed);
+        return std::move(changed.study);
+      };
       const StudyChange change =
           ChangeOfStudy(prepared_, motion_, at, parameter.value, kStep * parameter.scale);
       const LoadDerivatives loads = DifferentiateLoads(prepared_, motion_, change);

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
-#include <memory>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -19,16 +19,14 @@ using Number = std::function<double&(Mechanism*)>;
 
 class Dimensions {
  public:
-  Dimensions(const StudyFile& file, bool zeros)
-      : file_(std::make_shared<StudyFile>(file)), zeros_(zeros) {}
+  Dimensions(const StudyFile& file, bool zeros) : mechanism_(file.study.mechanism), zeros_(zeros) {}
 
   std::vector<StudyParameter> Run() {
-    const Mechanism& mechanism = file_->study.mechanism;
-    for (size_t l = 0; l < mechanism.links.size(); ++l) {
-      if (static_cast<int>(l) != mechanism.ground) AddBody(l);
+    for (size_t l = 0; l < mechanism_.links.size(); ++l) {
+      if (static_cast<int>(l) != mechanism_.ground) AddBody(l);
     }
     std::set<std::pair<int, int>> added;
-    for (const Joint& joint : mechanism.joints) {
+    for (const Joint& joint : mechanism_.joints) {
       for (const AnchorId& id : {joint.first, joint.second}) {
         if (added.insert({id.link, id.anchor}).second) AddAnchor(id);
       }
@@ -38,48 +36,46 @@ class Dimensions {
 
  private:
   void AddBody(size_t l) {
-    const Link& link = file_->study.mechanism.links[l];
-    if (link.mass_properties.mass == 0) return;
-    Add(link.name + ".mass", "kg", 1, link.mass_properties.mass,
+    const Link& link = mechanism_.links[l];
+    const MassProperties& body = link.mass_properties;
+    if (body.mass == 0) return;
+    Add(link.name + ".mass", "kg", 1, body.mass, body.mass,
         [l](Mechanism* m) -> double& { return m->links[l].mass_properties.mass; });
     for (int k = 0; k < 3; ++k) {
-      AddLength(fmt::format("{}.center_of_gravity.{}", link.name, kAxes[k]),
+      AddLength(fmt::format("{}.center_of_gravity.{}", link.name, kAxes[k]), body.p_LoLcm[k],
                 [l, k](Mechanism* m) -> double& { return m->links[l].mass_properties.p_LoLcm[k]; });
     }
   }
 
   void AddAnchor(const AnchorId& id) {
-    const Mechanism& mechanism = file_->study.mechanism;
-    const std::string name =
-        fmt::format("{}/{}", mechanism.links[id.link].name, mechanism.anchor(id).name);
+    const Anchor& anchor = mechanism_.anchor(id);
+    const std::string name = fmt::format("{}/{}", mechanism_.links[id.link].name, anchor.name);
     for (int k = 0; k < 3; ++k) {
-      AddLength(fmt::format("{}.{}", name, kAxes[k]), [id, k](Mechanism* m) -> double& {
-        return m->links[id.link].anchors[id.anchor].X_LA.p[k];
-      });
+      AddLength(fmt::format("{}.{}", name, kAxes[k]), anchor.X_LA.p[k],
+                [id, k](Mechanism* m) -> double& {
+                  return m->links[id.link].anchors[id.anchor].X_LA.p[k];
+                });
     }
   }
 
-  void AddLength(const std::string& name, const Number& number) {
-    const DisplayUnits& units = file_->study.mechanism.units;
-    const double value = number(&file_->study.mechanism);
-    const double length = CharacteristicLength(file_->study.mechanism);
+  void AddLength(const std::string& name, double value, const Number& number) {
     constexpr double kZero = 1e-12;  // of a length: what is left of a number that was rotated
+    constexpr double kLeast = 0.01;  // of it: what a change of a number near zero is measured by
+    const double length = CharacteristicLength(mechanism_);
     if (std::abs(value) <= kZero * length && !zeros_) return;
-    Add(name, units.length, units.metres, std::max(std::abs(value), 0.01 * length), number);
+    Add(name, mechanism_.units.length, mechanism_.units.metres, value,
+        std::max(std::abs(value), kLeast * length), number);
   }
 
-  void Add(const std::string& name, const std::string& unit, double factor, double scale,
-           const Number& number) {
-    const std::shared_ptr<StudyFile> file = file_;
-    parameters_.push_back({name, unit, number(&file_->study.mechanism) / factor, scale / factor,
-                           [file, number, factor](double value) {
-                             StudyFile changed = *file;
-                             number(&changed.study.mechanism) = value * factor;
-                             return changed;
-                           }});
+  void Add(const std::string& name, const std::string& unit, double factor, double value,
+           double scale, const Number& number) {
+    const auto put = [number, factor](double figure, StudyFile* file) {
+      number(&file->study.mechanism) = figure * factor;
+    };
+    parameters_.push_back({name, unit, value / factor, scale / factor, put});
   }
 
-  std::shared_ptr<StudyFile> file_;
+  const Mechanism& mechanism_;
   bool zeros_;
   std::vector<StudyParameter> parameters_;
 };

@@ -14,7 +14,7 @@ struct StudyParameter {
   std::string unit;  ///< "mm"
   double value = 0;  ///< in the unit
   double scale = 1;  ///< what a change is measured by: the value, or a length of the mechanism
-  std::function<StudyFile(double value)> at;  ///< the study with another value
+  std::function<void(double value, StudyFile* file)> put;  ///< gives a study this value
 };
 
 /// The numbers of the mechanism itself, in the units of its file: mass and centre of gravity of

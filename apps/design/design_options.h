@@ -11,4 +11,7 @@ namespace vmech {
 /// `vmech sensitivities`.
 void AddSensitivities(CLI::App* app, SensitivityArguments* arguments);
 
+/// `vmech optimise`.
+void AddOptimise(CLI::App* app, OptimiseArguments* arguments);
+
 }  // namespace vmech

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "vmech/apps/commands.h"
+#include "vmech/apps/design/asked.h"
 #include "vmech/apps/design/sensitivity_report.h"
 #include "vmech/apps/design/sensitivity_texts.h"
 #include "vmech/apps/files/file_kind.h"
@@ -15,28 +16,6 @@
 #include "vmech/studies/study_reader.h"
 
 namespace vmech {
-namespace {
-
-std::vector<StudyParameter> ParametersAsked(const StudyFile& file,
-                                            const std::vector<std::string>& names) {
-  if (names.empty()) return DimensionsOf(file, false);
-  const std::vector<StudyParameter> known = DimensionsOf(file, true);
-  std::vector<StudyParameter> asked;
-  for (const std::string& name : names) asked.push_back(FindParameter(known, name));
-  return asked;
-}
-
-std::vector<Figure> FiguresAsked(const StudyFile& file, const StudyOutcome& outcome,
-                                 const std::vector<std::string>& names) {
-  const std::vector<Figure> known = FiguresOf(file, outcome);
-  if (names.empty()) return known;
-  std::vector<Figure> asked;
-  for (const std::string& name : names) asked.push_back(FindFigure(known, name));
-  return asked;
-}
-
-}  // namespace
-
 int RunSensitivities(const SensitivityArguments& arguments) {
   const StudyFile file = ReadAs({"sensitivities", {FileKind::kStudy}}, arguments.study, ReadStudy);
   std::optional<ResultFolder> folder;

@@ -42,6 +42,7 @@ const KindOfResult& Describe(ResultKind kind) {
        nullptr},
       {"vmech compare", {"results.csv", "summary.json", "report.html"}, "rows.jsonl"},
       {"vmech sensitivities", {"sensitivities.csv", "report.html"}, nullptr},
+      {"vmech optimise", {"design.csv", "mechanism.yaml", "report.html"}, nullptr},
   };
   return kKinds[static_cast<int>(kind)];
 }
@@ -172,8 +173,9 @@ void ResultFolder::LockTarget() {
 /// Nothing is replaced that is not a result of the same kind.
 void ResultFolder::RefuseOthers() const {
   const KindOfResult& mine = Describe(kind_);
-  for (const ResultKind other : {ResultKind::kLoads, ResultKind::kSimulation,
-                                 ResultKind::kComparison, ResultKind::kSensitivities}) {
+  for (const ResultKind other :
+       {ResultKind::kLoads, ResultKind::kSimulation, ResultKind::kComparison,
+        ResultKind::kSensitivities, ResultKind::kDesign}) {
     if (other == kind_) continue;
     const KindOfResult& kind = Describe(other);
     // A simulation's set holds one of loads.
