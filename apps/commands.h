@@ -42,6 +42,30 @@ int RunLoads(const LoadsArguments& arguments);
 /// Of a study with a simulation; the default folder is "<study>-simulate".
 int RunSimulate(const LoadsArguments& arguments);
 
+struct SensitivityArguments {
+  std::filesystem::path study;
+  std::vector<std::string> by, of;  ///< parameters and figures by name; empty: all
+  bool undetermined = false;
+  std::filesystem::path out;  ///< empty: nothing is written
+  int threads = 0;            ///< 0: all processors
+  bool quiet = false;
+};
+int RunSensitivities(const SensitivityArguments& arguments);
+
+struct OptimiseArguments {
+  std::filesystem::path study;
+  std::string minimise, maximise;  ///< a figure by name; one of them is empty
+  std::vector<std::string> vary;   ///< "crank/pin.x=40..60"
+  std::vector<std::string> keep;   ///< "pin.life>=10000"
+  std::string method = "slsqp";    ///< or "mma"
+  int starts = 1;
+  bool undetermined = false;
+  std::filesystem::path out;  ///< empty: nothing is written
+  int threads = 0;            ///< 0: all processors
+  bool quiet = false;
+};
+int RunOptimise(const OptimiseArguments& arguments);
+
 struct CompareArguments {
   std::filesystem::path suite;
   std::vector<std::string> solvers;  ///< by name; empty: all

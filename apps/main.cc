@@ -15,6 +15,7 @@
 #include "vmech/apps/console/option_error.h"
 #include "vmech/apps/console/printable_streams.h"
 #include "vmech/apps/console/suggestion.h"
+#include "vmech/apps/design/design_options.h"
 #include "vmech/apps/haptic/device_options.h"
 #include "vmech/apps/import_launcher.h"
 #include "vmech/mechanisms/files/document.h"
@@ -340,6 +341,8 @@ void AddCompare(CLI::App* app, vmech::CompareArguments* compare) {
 struct Arguments {
   vmech::CheckArguments check;
   vmech::LoadsArguments loads, simulated;
+  vmech::SensitivityArguments sensitivities;
+  vmech::OptimiseArguments optimise;
   vmech::CompareArguments compare;
   vmech::IkArguments ik;
   vmech::HapticArguments haptic;
@@ -359,6 +362,8 @@ void AddCommands(CLI::App* app, Arguments* arguments) {
   AddStudyOptions(app->add_subcommand("loads", kLoadsHelp), "loads", &arguments->loads);
   AddStudyOptions(app->add_subcommand("simulate", kSimulateHelp), "simulate",
                   &arguments->simulated);
+  vmech::AddSensitivities(app, &arguments->sensitivities);
+  vmech::AddOptimise(app, &arguments->optimise);
   AddCompare(app, &arguments->compare);
   app->add_subcommand("import",
                       "Makes a mechanism file of a CAD assembly, SDFormat or URDF; see `vmech "
@@ -385,6 +390,8 @@ int RunCommand(const CLI::App& app, const Arguments& arguments) {
   if (app.got_subcommand("check")) return RunCheck(arguments.check);
   if (app.got_subcommand("loads")) return RunLoads(arguments.loads);
   if (app.got_subcommand("simulate")) return RunSimulate(arguments.simulated);
+  if (app.got_subcommand("sensitivities")) return RunSensitivities(arguments.sensitivities);
+  if (app.got_subcommand("optimise")) return RunOptimise(arguments.optimise);
   if (app.got_subcommand("ik")) return RunIk(arguments.ik);
   if (app.got_subcommand("haptic")) return RunHaptic(arguments.haptic);
   if (app.got_subcommand("replay")) return RunReplay(arguments.replay);

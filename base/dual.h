@@ -1,72 +1,118 @@
 #pragma once
 
 #include <cmath>
+#include <type_traits>
 
 #include "vmech/base/eigen.h"
+#include "vmech/base/lanes.h"
 
 namespace vmech {
 
 /// A number and its derivative by one parameter. As the number T of the kernels it takes a
 /// derivative through the same lines as the value: exact to rounding, where differences of values
-/// lose half of the digits. Comparisons look at the values.
-struct Dual {
-  double value = 0;
-  double slope = 0;  ///< d value / d parameter
+/// lose half of the digits. Comparisons look at the values. N is double, or Lanes4 (lanes4.h).
+template <typename N>
+struct DualOf {
+  N value = 0;
+  N slope = 0;  ///< d value / d parameter
 
-  Dual() = default;
-  Dual(double constant) : value(constant) {}  // NOLINT: numbers mix with duals
-  Dual(double value, double slope) : value(value), slope(slope) {}
+  DualOf() = default;
+  DualOf(double constant) : value(constant) {}  // NOLINT: numbers mix with duals
+  DualOf(const N& value, const N& slope) : value(value), slope(slope) {}
+  /// The same dual in every lane.
+  template <typename M>
+  requires(!std::is_same_v<M, N>) explicit DualOf(const DualOf<M>& dual)
+      : value(dual.value), slope(dual.slope) {}
 
-  Dual operator-() const { return {-value, -slope}; }
-  Dual& operator+=(const Dual& b) { return *this = *this + b; }
-  Dual& operator-=(const Dual& b) { return *this = *this - b; }
-  Dual& operator*=(const Dual& b) { return *this = *this * b; }
-  Dual& operator/=(const Dual& b) { return *this = *this / b; }
-  friend Dual operator+(const Dual& a, const Dual& b) {
+  /// `number(lane)`, a double or a Dual, in each lane.
+  template <typename Number>
+  static DualOf Of(const Number& number) {
+    const DualOf<double> lanes[] = {number(0), number(1), number(2), number(3)};
+    return {N::Of([&](int lane) { return lanes[lane].value; }),
+            N::Of([&](int lane) { return lanes[lane].slope; })};
+  }
+
+  DualOf operator-() const { return {-value, -slope}; }
+  DualOf& operator+=(const DualOf& b) { return *this = *this + b; }
+  DualOf& operator-=(const DualOf& b) { return *this = *this - b; }
+  DualOf& operator*=(const DualOf& b) { return *this = *this * b; }
+  DualOf& operator/=(const DualOf& b) { return *this = *this / b; }
+  friend DualOf operator+(const DualOf& a, const DualOf& b) {
     return {a.value + b.value, a.slope + b.slope};
   }
-  friend Dual operator-(const Dual& a, const Dual& b) {
+  friend DualOf operator-(const DualOf& a, const DualOf& b) {
     return {a.value - b.value, a.slope - b.slope};
   }
-  friend Dual operator*(const Dual& a, const Dual& b) {
+  friend DualOf operator*(const DualOf& a, const DualOf& b) {
     return {a.value * b.value, a.slope * b.value + a.value * b.slope};
   }
-  friend Dual operator/(const Dual& a, const Dual& b) {
-    const double ratio = a.value / b.value;
+  friend DualOf operator/(const DualOf& a, const DualOf& b) {
+    const N ratio = a.value / b.value;
     return {ratio, (a.slope - ratio * b.slope) / b.value};
   }
-  friend bool operator<(const Dual& a, const Dual& b) { return a.value < b.value; }
-  friend bool operator>(const Dual& a, const Dual& b) { return a.value > b.value; }
-  friend bool operator<=(const Dual& a, const Dual& b) { return a.value <= b.value; }
+  /// Of values and slopes: where Eigen looks for a factor of zero or one.
+  friend bool operator==(const DualOf& a, const DualOf& b) {
+    return a.value == b.value && a.slope == b.slope;
+  }
+  friend auto operator<(const DualOf& a, const DualOf& b) { return a.value < b.value; }
+  friend auto operator>(const DualOf& a, const DualOf& b) { return a.value > b.value; }
+  friend auto operator<=(const DualOf& a, const DualOf& b) { return a.value <= b.value; }
 
-  friend Dual Select(bool condition, const Dual& a, const Dual& b) { return condition ? a : b; }
-  friend Dual abs(const Dual& a) { return a.value < 0 ? -a : a; }
-  friend Dual min(const Dual& a, const Dual& b) { return b < a ? b : a; }
-  friend Dual max(const Dual& a, const Dual& b) { return a < b ? b : a; }
-  friend Dual sqrt(const Dual& a) {
-    const double root = std::sqrt(a.value);
-    return {root, root > 0 ? 0.5 * a.slope / root : 0};
+  template <typename Condition>
+  friend DualOf Select(const Condition& condition, const DualOf& a, const DualOf& b) {
+    return {Select(condition, a.value, b.value), Select(condition, a.slope, b.slope)};
   }
-  friend Dual round(const Dual& a) { return std::round(a.value); }
-  friend Dual atan2(const Dual& y, const Dual& x) {
-    const double square = x.value * x.value + y.value * y.value;
-    const double slope = square > 0 ? (x.value * y.slope - y.value * x.slope) / square : 0;
-    return {std::atan2(y.value, x.value), slope};
+  friend DualOf abs(const DualOf& a) { return Select(a.value < N(0), -a, a); }
+  friend DualOf min(const DualOf& a, const DualOf& b) { return Select(b < a, b, a); }
+  friend DualOf max(const DualOf& a, const DualOf& b) { return Select(a < b, b, a); }
+  friend DualOf sqrt(const DualOf& a) {
+    using std::sqrt;
+    const N root = sqrt(a.value), zero(0);
+    return {root, Select(root > zero, N(N(0.5) * a.slope / root), zero)};
   }
-  friend void SinCos(const Dual& angle, Dual* sine, Dual* cosine) {
-    const double s = std::sin(angle.value), c = std::cos(angle.value);
+  friend DualOf pow(const DualOf& a, double exponent) {
+    using std::pow;
+    return {pow(a.value, exponent), exponent * pow(a.value, exponent - 1) * a.slope};
+  }
+  friend DualOf round(const DualOf& a) {
+    using std::round;
+    return {round(a.value), N(0)};
+  }
+  friend DualOf atan2(const DualOf& y, const DualOf& x) {
+    using std::atan2;
+    const N square = x.value * x.value + y.value * y.value, zero(0);
+    const N slope = (x.value * y.slope - y.value * x.slope) / square;
+    return {atan2(y.value, x.value), Select(square > zero, slope, zero)};
+  }
+  friend void SinCos(const DualOf& angle, DualOf* sine, DualOf* cosine) {
+    N s, c;
+    SinCos(angle.value, &s, &c);
     *sine = {s, c * angle.slope};
     *cosine = {c, -s * angle.slope};
   }
 };
 
+using Dual = DualOf<double>;
+
+template <typename T>
+inline constexpr bool kIsDual = false;
+template <typename N>
+inline constexpr bool kIsDual<DualOf<N>> = true;
+
+template <typename N>
+inline constexpr int kLanesOf<DualOf<N>> = kLanesOf<N>;
+template <typename N>
+double Lane(const DualOf<N>& number, int lane) {
+  return Lane(number.value, lane);
+}
+
 }  // namespace vmech
 
-template <>
-struct Eigen::NumTraits<vmech::Dual> : Eigen::GenericNumTraits<vmech::Dual> {
-  using Real = vmech::Dual;
-  using NonInteger = vmech::Dual;
-  using Nested = vmech::Dual;
+template <typename N>
+struct Eigen::NumTraits<vmech::DualOf<N>> : Eigen::GenericNumTraits<vmech::DualOf<N>> {
+  using Real = vmech::DualOf<N>;
+  using NonInteger = vmech::DualOf<N>;
+  using Nested = vmech::DualOf<N>;
   using Literal = double;
   enum {
     IsInteger = 0,
@@ -80,11 +126,11 @@ struct Eigen::NumTraits<vmech::Dual> : Eigen::GenericNumTraits<vmech::Dual> {
 };
 
 // Numbers mix with duals in expressions.
-template <typename Operation>
-struct Eigen::ScalarBinaryOpTraits<double, vmech::Dual, Operation> {
-  using ReturnType = vmech::Dual;
+template <typename N, typename Operation>
+struct Eigen::ScalarBinaryOpTraits<double, vmech::DualOf<N>, Operation> {
+  using ReturnType = vmech::DualOf<N>;
 };
-template <typename Operation>
-struct Eigen::ScalarBinaryOpTraits<vmech::Dual, double, Operation> {
-  using ReturnType = vmech::Dual;
+template <typename N, typename Operation>
+struct Eigen::ScalarBinaryOpTraits<vmech::DualOf<N>, double, Operation> {
+  using ReturnType = vmech::DualOf<N>;
 };

@@ -1,8 +1,12 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 
+#include "vmech/base/dual.h"
 #include "vmech/base/eigen.h"
+#include "vmech/base/lanes.h"
 
 namespace vmech {
 
@@ -75,51 +79,43 @@ void SinCos(const Lanes4& angle, Lanes4* sine, Lanes4* cosine);
 /// The angle of (x, y), -pi to pi, within 5e-16; 0 for (0, 0).
 Lanes4 atan2(const Lanes4& y, const Lanes4& x);
 
-// The same words for a single number.
-
-inline double Select(bool condition, double a, double b) {
-  return condition ? a : b;
-}
-inline void SinCos(double angle, double* sine, double* cosine) {
-  *sine = std::sin(angle);
-  *cosine = std::cos(angle);
-}
-
-inline bool AllLanes(bool condition) {
-  return condition;
-}
 inline bool AllLanes(const Lanes4::Mask& mask) {
   return (mask[0] & mask[1] & mask[2] & mask[3]) != 0;
 }
-
-template <typename T>
-inline constexpr int kLanesOf = 1;
 template <>
 inline constexpr int kLanesOf<Lanes4> = Lanes4::kLanes;
-
-inline double Lane(double value, int /*lane*/) {
-  return value;
-}
 inline double Lane(const Lanes4& value, int lane) {
   return value[lane];
 }
-/// One lane of a vector or matrix.
-template <typename T, int rows, int columns>
-Eigen::Matrix<double, rows, columns> Lane(const Eigen::Matrix<T, rows, columns>& value, int lane) {
-  Eigen::Matrix<double, rows, columns> one;
-  for (int i = 0; i < rows * columns; ++i) one(i) = Lane(value(i), lane);
-  return one;
-}
 
-/// T made of `number(lane)` for each of its lanes.
-template <typename T, typename Number>
-T FromLanes(const Number& number) {
-  if constexpr (kLanesOf<T> == 1) {
-    return number(0);
-  } else {
-    return Lanes4::Of(number);
+/// Four packets at a time, transposed in registers.
+inline void StoreLanes(const Lanes4* values, int count, double* row, ptrdiff_t stride) {
+  using Lanes = double __attribute__((vector_size(32)));
+  for (; count >= 4; count -= 4, values += 4, row += 4) {
+    Lanes a, b, c, d;
+    std::memcpy(&a, values, sizeof a);
+    std::memcpy(&b, values + 1, sizeof b);
+    std::memcpy(&c, values + 2, sizeof c);
+    std::memcpy(&d, values + 3, sizeof d);
+    const Lanes ab02 = __builtin_shufflevector(a, b, 0, 4, 2, 6);
+    const Lanes ab13 = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+    const Lanes cd02 = __builtin_shufflevector(c, d, 0, 4, 2, 6);
+    const Lanes cd13 = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    const Lanes rows[] = {__builtin_shufflevector(ab02, cd02, 0, 1, 4, 5),
+                          __builtin_shufflevector(ab13, cd13, 0, 1, 4, 5),
+                          __builtin_shufflevector(ab02, cd02, 2, 3, 6, 7),
+                          __builtin_shufflevector(ab13, cd13, 2, 3, 6, 7)};
+    for (int lane = 0; lane < 4; ++lane) {
+      std::memcpy(row + lane * stride, &rows[lane], sizeof(Lanes));
+    }
+  }
+  for (int k = 0; k < count; ++k) {
+    for (int lane = 0; lane < Lanes4::kLanes; ++lane) row[lane * stride + k] = values[k][lane];
   }
 }
+
+/// Four numbers that are computed with at once, and the derivative of each.
+using Dual4 = DualOf<Lanes4>;
 
 }  // namespace vmech
 
@@ -158,4 +154,14 @@ struct Eigen::ScalarBinaryOpTraits<double, vmech::Lanes4, Operation> {
 template <typename Operation>
 struct Eigen::ScalarBinaryOpTraits<vmech::Lanes4, double, Operation> {
   using ReturnType = vmech::Lanes4;
+};
+
+// As those of Lanes4.
+template <int size>
+struct Eigen::internal::compute_default_alignment<vmech::Dual4, size> {
+  enum { value = 0 };
+};
+template <>
+struct Eigen::internal::compute_default_alignment<vmech::Dual4, Eigen::Dynamic> {
+  enum { value = EIGEN_MAX_ALIGN_BYTES };
 };

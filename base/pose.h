@@ -12,6 +12,10 @@ template <typename T>
 using Vector6 = Eigen::Matrix<T, 6, 1>;
 template <typename T>
 using Matrix3 = Eigen::Matrix<T, 3, 3>;
+template <typename T>
+using MatrixX = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
+template <typename T>
+using VectorX = Eigen::Matrix<T, Eigen::Dynamic, 1>;
 using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;

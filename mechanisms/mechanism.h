@@ -43,24 +43,28 @@ struct AnchorId {
 /// A linear spring and the dry and viscous friction along one freedom of a joint.
 /// Generalised force on the freedom: -stiffness (q - rest) - viscous q', and dry friction, which
 /// opposes the sliding of all freedoms of a contact together.
-struct Passive {
-  double stiffness = 0;  ///< [N/m] or [N m/rad]
-  double rest = 0;       ///< coordinate at which the spring is slack [m] or [rad]
-  double viscous = 0;    ///< [N s/m] or [N m s/rad]
-  double coulomb = 0;    ///< constant part of dry friction [N] or [N m]
+template <typename T>
+struct PassiveOf {
+  T stiffness = 0;  ///< [N/m] or [N m/rad]
+  T rest = 0;       ///< coordinate at which the spring is slack [m] or [rad]
+  T viscous = 0;    ///< [N s/m] or [N m s/rad]
+  T coulomb = 0;    ///< constant part of dry friction [N] or [N m]
 };
+using Passive = PassiveOf<double>;
 
 /// Dry friction in proportion to the joint's load (dynamics/contact_friction.h has the formulas).
 /// The load is that of the joint itself, so that the reactions and the friction are found together.
 /// A length of zero is one that is not given; the load that it would turn into friction is left
 /// out.
-struct LoadFriction {
-  double coefficient = 0;    ///< [-]
-  double radius = 0;         ///< of the sliding surface of a rotation, mean radius of a thread [m]
-  double thrust_radius = 0;  ///< mean radius of the collars that take the thrust along a pin [m]
-  double length = 0;         ///< between the two supports that hold a tilting couple [m]
-  double width = 0;          ///< between the two faces that keep a slide from turning [m]
+template <typename T>
+struct LoadFrictionOf {
+  T coefficient = 0;    ///< [-]
+  T radius = 0;         ///< of the sliding surface of a rotation, mean radius of a thread [m]
+  T thrust_radius = 0;  ///< mean radius of the collars that take the thrust along a pin [m]
+  T length = 0;         ///< between the two supports that hold a tilting couple [m]
+  T width = 0;          ///< between the two faces that keep a slide from turning [m]
 };
+using LoadFriction = LoadFrictionOf<double>;
 
 /// A joint is the coincidence of an anchor on its first link with one on its second. At
 /// coordinates zero the two anchors coincide; the coordinates describe the pose of the second

@@ -15,21 +15,6 @@
 namespace vmech {
 namespace {
 
-/// The freedom that turns about the z axis of a joint that can carry bearings; -1 if it has none.
-int TurnAboutAxis(JointType type) {
-  switch (type) {
-    case JointType::kRevolute:
-    case JointType::kScrew:
-      return 0;
-    case JointType::kCylindrical:
-      return 1;
-    case JointType::kPlanar:
-      return 2;
-    default:
-      return -1;
-  }
-}
-
 DutyCycle CycleOfJoint(const LoadStudy& study, const LoadStudyResult& loads, int joint,
                        int freedom) {
   DutyCycle cycle;
@@ -87,6 +72,20 @@ void RunSimulation(const StudyFile& file, const LoadStudyOptions& options, Study
 }
 
 }  // namespace
+
+int TurnAboutAxis(JointType type) {
+  switch (type) {
+    case JointType::kRevolute:
+    case JointType::kScrew:
+      return 0;
+    case JointType::kCylindrical:
+      return 1;
+    case JointType::kPlanar:
+      return 2;
+    default:
+      return -1;
+  }
+}
 
 StudyOutcome RunStudy(const StudyFile& file, const LoadStudyOptions& options) {
   StudyOutcome outcome;

@@ -50,6 +50,9 @@ struct StudyFile {
   std::vector<InputFile> inputs = {};
 };
 
+/// The freedom that turns about the z axis of a joint that can carry bearings; -1 if it has none.
+int TurnAboutAxis(JointType type);
+
 /// What came out for the bearings of one joint.
 struct BearingOutcome {
   int joint = -1;

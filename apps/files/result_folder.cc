@@ -41,6 +41,8 @@ const KindOfResult& Describe(ResultKind kind) {
         "bearings.csv", "summary.json", "report.html"},
        nullptr},
       {"vmech compare", {"results.csv", "summary.json", "report.html"}, "rows.jsonl"},
+      {"vmech sensitivities", {"sensitivities.csv", "report.html"}, nullptr},
+      {"vmech optimise", {"design.csv", "mechanism.yaml", "report.html"}, nullptr},
   };
   return kKinds[static_cast<int>(kind)];
 }
@@ -172,7 +174,8 @@ void ResultFolder::LockTarget() {
 void ResultFolder::RefuseOthers() const {
   const KindOfResult& mine = Describe(kind_);
   for (const ResultKind other :
-       {ResultKind::kLoads, ResultKind::kSimulation, ResultKind::kComparison}) {
+       {ResultKind::kLoads, ResultKind::kSimulation, ResultKind::kComparison,
+        ResultKind::kSensitivities, ResultKind::kDesign}) {
     if (other == kind_) continue;
     const KindOfResult& kind = Describe(other);
     // A simulation's set holds one of loads.

@@ -11,7 +11,7 @@
 namespace vmech {
 
 /// What a result folder holds.
-enum class ResultKind { kLoads, kSimulation, kComparison };
+enum class ResultKind { kLoads, kSimulation, kComparison, kSensitivities, kDesign };
 
 /// The folder of a result. Its files are written into another one beside it,
 /// `<folder>.vmech-unfinished`, and the two are swapped in one step (renameat2,

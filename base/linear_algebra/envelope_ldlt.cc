@@ -76,6 +76,7 @@ void EnvelopeLdlt<T>::Solve(T* x) const {
 
 template class EnvelopeLdlt<double>;
 template class EnvelopeLdlt<Dual>;
+template class EnvelopeLdlt<Dual4>;
 template class EnvelopeLdlt<Lanes4>;
 
 }  // namespace vmech

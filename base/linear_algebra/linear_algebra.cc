@@ -17,6 +17,16 @@ VectorXd SolveAboveFloor(const MatrixXd& H, const VectorXd& b, double floor) {
          inverse.cwiseProduct(VectorXd(eigen.eigenvectors().transpose() * b));
 }
 
+VectorX<Dual> SolveAboveFloor(const MatrixX<Dual>& H, const VectorX<Dual>& b, double floor) {
+  const auto value = [](const Dual& x) { return x.value; };
+  const auto slope = [](const Dual& x) { return x.slope; };
+  const MatrixXd H0 = H.unaryExpr(value);
+  const VectorXd x = SolveAboveFloor(H0, b.unaryExpr(value), floor);
+  const VectorXd open = b.unaryExpr(slope) - H.unaryExpr(slope) * x;
+  const VectorXd dx = SolveAboveFloor(H0, open, floor);
+  return x.binaryExpr(dx, [](double value, double slope) { return Dual(value, slope); });
+}
+
 MatrixXd FindKernel(const MatrixXd& H, double floor) {
   if (H.cols() == 0) return H;
   const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(H);  // eigenvalues increase

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "vmech/base/dual.h"
 #include "vmech/base/pose.h"
 
 namespace vmech {
@@ -15,6 +16,8 @@ VectorXd SolveSymmetric(const MatrixXd& H, const VectorXd& b);
 /// The shortest x of H x = b without the eigenvectors of H whose eigenvalue is at most `floor`:
 /// unknowns along them are zero. H symmetric positive semidefinite.
 VectorXd SolveAboveFloor(const MatrixXd& H, const VectorXd& b, double floor);
+/// With its derivative, as long as what is below the floor stays there: H x' = b' - H' x.
+VectorX<Dual> SolveAboveFloor(const MatrixX<Dual>& H, const VectorX<Dual>& b, double floor);
 
 /// The eigenvectors of H whose eigenvalue is at most `floor` [n, how many]. H as above.
 MatrixXd FindKernel(const MatrixXd& H, double floor);

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "vmech/base/dual.h"
+
 namespace vmech {
 
 void Arrangement::Validate() const {
@@ -31,6 +33,22 @@ void Arrangement::Validate() const {
   }
 }
 
+template <typename T>
+std::array<Vector3<T>, 2> SharesOf(const Arrangement& arrangement, const Wrench<T>& wrench) {
+  const std::vector<double>& z = arrangement.positions;
+  const Vector3<T>&f = wrench.force, &m = wrench.moment;
+  Vector3<T> R_b = Vector3<T>::Zero();
+  if (z.size() == 2) {
+    const T per_distance(1 / (z[1] - z[0]));
+    R_b = {per_distance * (m.y() - z[0] * f.x()), per_distance * (-m.x() - z[0] * f.y()), T(0)};
+  }
+  Vector3<T> R_a = f - R_b;
+  if (arrangement.locating == 1) std::swap(R_a.z(), R_b.z());
+  return {R_a, R_b};
+}
+template std::array<Vector3d, 2> SharesOf<double>(const Arrangement&, const Wrenchd&);
+template std::array<Vector3<Dual>, 2> SharesOf<Dual>(const Arrangement&, const Wrench<Dual>&);
+
 ArrangementLoads DistributeLoads(const Arrangement& arrangement,
                                  std::span<const Wrenchd> wrenches) {
   arrangement.Validate();
@@ -39,20 +57,12 @@ ArrangementLoads DistributeLoads(const Arrangement& arrangement,
   loads.forces.assign(z.size(), std::vector<BearingForce>(wrenches.size()));
   loads.tilting_moment.assign(wrenches.size(), 0.0);
   for (size_t i = 0; i < wrenches.size(); ++i) {
-    const Vector3d& f = wrenches[i].force;
-    // m - z_a e_z x f: the moment about the first bearing.
-    const Vector3d m_a = wrenches[i].moment - z[0] * Vector3d::UnitZ().cross(f);
-    Vector3d R_b = Vector3d::Zero();
-    if (z.size() == 2) {
-      // (z_b - z_a) e_z x R_b = m_a, x and y.
-      R_b = Vector3d(m_a.y(), -m_a.x(), 0) / (z[1] - z[0]);
-    } else {
-      loads.tilting_moment[i] = std::hypot(m_a.x(), m_a.y());
-    }
-    Vector3d R_a = f - R_b;
-    if (arrangement.locating == 1) std::swap(R_a.z(), R_b.z());
-    loads.forces[0][i].force = R_a;
-    if (z.size() == 2) loads.forces[1][i].force = R_b;
+    const std::array<Vector3d, 2> shares = SharesOf(arrangement, wrenches[i]);
+    for (size_t k = 0; k < z.size(); ++k) loads.forces[k][i].force = shares[k];
+    if (z.size() == 2) continue;
+    // m - z_a e_z x f: the moment about the only bearing.
+    const Vector3d m_a = wrenches[i].moment - z[0] * Vector3d::UnitZ().cross(wrenches[i].force);
+    loads.tilting_moment[i] = std::hypot(m_a.x(), m_a.y());
   }
   return loads;
 }

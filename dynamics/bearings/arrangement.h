@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -38,6 +39,9 @@ struct ArrangementLoads {
 /// With two bearings a and b: R_b.x = (m.y - z_a f.x) / (z_b - z_a),
 /// R_b.y = (-m.x - z_a f.y) / (z_b - z_a), R_a = f - R_b; the locating bearing takes all of f.z.
 /// The bearings are taken as pivots: they transmit no moment.
+/// The shares of one wrench: R_a, and R_b where there is a second bearing. T: double or Dual.
+template <typename T>
+std::array<Vector3<T>, 2> SharesOf(const Arrangement& arrangement, const Wrench<T>& wrench);
 ArrangementLoads DistributeLoads(const Arrangement& arrangement, std::span<const Wrenchd> wrenches);
 
 }  // namespace vmech

@@ -1,5 +1,7 @@
 #include "vmech/dynamics/bearings/bearing.h"
 
+#include <algorithm>
+
 #include <tuple>
 
 namespace vmech {
@@ -14,6 +16,12 @@ double LifeExponent(BearingKind kind) {
 
 double WeibullSlope(BearingKind kind) {
   return kind == BearingKind::kDeepGrooveBall ? 10.0 / 9.0 : 9.0 / 8.0;
+}
+
+double WeibullSlope(std::span<const BearingKind> kinds) {
+  double flattest = WeibullSlope(BearingKind::kCylindricalRoller);
+  for (BearingKind kind : kinds) flattest = std::min(flattest, WeibullSlope(kind));
+  return flattest;
 }
 
 bool IsSmaller(const Bearing& a, const Bearing& b) {

@@ -23,12 +23,12 @@ double Peak(const std::vector<BearingForce>& forces, double (BearingForce::*part
 
 double LifeOfAll(const std::vector<const Candidate*>& bearings) {
   std::vector<double> lives;
-  double slope = WeibullSlope(BearingKind::kCylindricalRoller);
+  std::vector<BearingKind> kinds;
   for (const Candidate* candidate : bearings) {
     lives.push_back(candidate->rating->modified_life_hours);
-    slope = std::min(slope, WeibullSlope(candidate->bearing.kind));
+    kinds.push_back(candidate->bearing.kind);
   }
-  return SystemLife(lives, slope);
+  return SystemLife(lives, WeibullSlope(kinds));
 }
 
 double SystemLifeHours(const JointBearings& joint) {

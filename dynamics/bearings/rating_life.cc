@@ -28,34 +28,90 @@ constexpr std::array kA1{1.0,  0.64, 0.55, 0.47,  0.37,  0.25, 0.22,
 
 /// Where x lies among the ascending nodes: x = nodes[index] + fraction (nodes[index + 1] - ...),
 /// held at the ends.
+template <typename T>
 struct TablePosition {
   size_t index;
-  double fraction;
+  T fraction;
 };
 
-template <size_t N>
-TablePosition Locate(const std::array<double, N>& nodes, double x) {
-  const auto above = std::upper_bound(nodes.begin() + 1, nodes.end() - 1, x);
+template <typename T, size_t N>
+TablePosition<T> Locate(const std::array<double, N>& nodes, const T& x) {
+  using std::max, std::min;
+  const auto above = std::upper_bound(nodes.begin() + 1, nodes.end() - 1, x,
+                                      [](const T& at, double node) { return at < T(node); });
   const size_t i = above - nodes.begin() - 1;
-  return {i, std::clamp((x - nodes[i]) / (nodes[i + 1] - nodes[i]), 0.0, 1.0)};
+  const T fraction = (x - nodes[i]) / (nodes[i + 1] - nodes[i]);
+  return {i, min(max(fraction, T(0)), T(1))};
 }
 
-template <size_t N>
-double Interpolate(const std::array<double, N>& values, TablePosition at) {
+template <typename T, size_t N>
+T Interpolate(const std::array<double, N>& values, const TablePosition<T>& at) {
   return values[at.index] + at.fraction * (values[at.index + 1] - values[at.index]);
+}
+
+// The formulas, on numbers or duals.
+
+template <typename T>
+T DynamicLoad(const Bearing& bearing, const T& radial, const T& axial) {
+  using std::max;
+  if (bearing.kind == BearingKind::kCylindricalRoller) return radial;
+  const TablePosition<T> at =
+      Locate<T>(kRelativeAxialLoad, bearing.f0 * axial / bearing.static_rating);
+  return max(radial, kX * radial + Interpolate(kY, at) * axial);
+}
+
+template <typename T>
+T MeanLoad(std::span<const T> loads, std::span<const T> revolutions, double exponent) {
+  using std::pow;
+  if (loads.size() != revolutions.size()) {
+    throw std::invalid_argument(
+        fmt::format("mean load: {} loads but {} revolutions", loads.size(), revolutions.size()));
+  }
+  const T zero(0);
+  T harm(0), sum(0);
+  for (size_t i = 0; i < loads.size(); ++i) {
+    const T& P = loads[i];
+    harm += revolutions[i] * (exponent == 3.0 ? P * P * P : pow(P, exponent));
+    sum += revolutions[i];
+  }
+  return sum > zero && harm > zero ? T(pow(T(harm / sum), 1 / exponent)) : zero;
+}
+
+template <typename T>
+T RatingLife(double rating, const T& load, BearingKind kind) {
+  using std::pow;
+  return load > T(0) ? T(pow(T(rating / load), LifeExponent(kind))) : T(kInfinity);
+}
+
+template <typename T>
+T Hours(const T& life, const T& speed) {
+  constexpr double kRevolutionsPerMillion = 1e6;
+  constexpr double kSecondsPerHour = 3600;
+  if (!(speed > T(0))) return kInfinity;
+  return life * kRevolutionsPerMillion * 2 * std::numbers::pi / speed / kSecondsPerHour;
+}
+
+template <typename T>
+T LifeTogether(std::span<const T> lives, double weibull_slope) {
+  using std::pow;
+  T sum(0);
+  for (const T& L : lives) sum += pow(L, -weibull_slope);
+  return sum > T(0) ? T(pow(sum, -1 / weibull_slope)) : T(kInfinity);
 }
 
 }  // namespace
 
 AxialFactors DeepGrooveFactors(double relative_axial_load) {
-  const TablePosition at = Locate(kRelativeAxialLoad, relative_axial_load);
+  const TablePosition<double> at = Locate(kRelativeAxialLoad, relative_axial_load);
   return {Interpolate(kE, at), kX, Interpolate(kY, at)};
 }
 
 double EquivalentDynamicLoad(const Bearing& bearing, double radial, double axial) {
-  if (bearing.kind == BearingKind::kCylindricalRoller) return radial;
-  const AxialFactors k = DeepGrooveFactors(bearing.f0 * axial / bearing.static_rating);
-  return std::max(radial, k.X * radial + k.Y * axial);
+  return DynamicLoad(bearing, radial, axial);
+}
+
+Dual EquivalentDynamicLoad(const Bearing& bearing, const Dual& radial, const Dual& axial) {
+  return DynamicLoad(bearing, radial, axial);
 }
 
 double EquivalentStaticLoad(const Bearing& bearing, double radial, double axial) {
@@ -65,21 +121,20 @@ double EquivalentStaticLoad(const Bearing& bearing, double radial, double axial)
 
 double MeanEffectiveLoad(std::span<const double> loads, std::span<const double> revolutions,
                          double exponent) {
-  if (loads.size() != revolutions.size()) {
-    throw std::invalid_argument(
-        fmt::format("mean load: {} loads but {} revolutions", loads.size(), revolutions.size()));
-  }
-  double harm = 0, sum = 0;
-  for (size_t i = 0; i < loads.size(); ++i) {
-    const double P = loads[i];
-    harm += revolutions[i] * (exponent == 3.0 ? P * P * P : std::pow(P, exponent));
-    sum += revolutions[i];
-  }
-  return sum > 0 ? std::pow(harm / sum, 1 / exponent) : 0.0;
+  return MeanLoad(loads, revolutions, exponent);
+}
+
+Dual MeanEffectiveLoad(std::span<const Dual> loads, std::span<const Dual> revolutions,
+                       double exponent) {
+  return MeanLoad(loads, revolutions, exponent);
 }
 
 double BasicRatingLife(double rating, double load, BearingKind kind) {
-  return load > 0 ? std::pow(rating / load, LifeExponent(kind)) : kInfinity;
+  return RatingLife(rating, load, kind);
+}
+
+Dual BasicRatingLife(double rating, const Dual& load, BearingKind kind) {
+  return RatingLife(rating, load, kind);
 }
 
 double RequiredDynamicRating(double load, double life, BearingKind kind) {
@@ -87,10 +142,11 @@ double RequiredDynamicRating(double load, double life, BearingKind kind) {
 }
 
 double HoursOf(double life, double speed) {
-  constexpr double kRevolutionsPerMillion = 1e6;
-  constexpr double kSecondsPerHour = 3600;
-  if (!(speed > 0)) return kInfinity;
-  return life * kRevolutionsPerMillion * 2 * std::numbers::pi / speed / kSecondsPerHour;
+  return Hours(life, speed);
+}
+
+Dual HoursOf(const Dual& life, const Dual& speed) {
+  return Hours(life, speed);
 }
 
 double ReliabilityFactor(double reliability) {
@@ -103,9 +159,11 @@ double ReliabilityFactor(double reliability) {
 }
 
 double SystemLife(std::span<const double> lives, double weibull_slope) {
-  double sum = 0;
-  for (double L : lives) sum += std::pow(L, -weibull_slope);
-  return sum > 0 ? std::pow(sum, -1 / weibull_slope) : kInfinity;
+  return LifeTogether(lives, weibull_slope);
+}
+
+Dual SystemLife(std::span<const Dual> lives, double weibull_slope) {
+  return LifeTogether(lives, weibull_slope);
 }
 
 }  // namespace vmech

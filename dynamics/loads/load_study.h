@@ -28,21 +28,26 @@ struct HandDrive {
   Vector6d stiffness = Vector6d::Zero();
 };
 
+/// The numbers of a wrench from outside.
+template <typename T>
+struct LoadTableOf {
+  Vector3<T> p_L = Vector3<T>::Zero();  ///< point of application in the link's drawing frame [m]
+  /// Rows of the table, increasing; a single row where constant. Linear between rows.
+  std::vector<T> at;
+  std::vector<Wrench<T>> wrenches;
+  /// Length after which the table repeats, in units of `at`; 0 if it does not. Outside a table that
+  /// does not repeat the study is refused.
+  T period = 0;
+};
+
 /// A wrench from outside on a link.
-struct ExternalLoad {
+struct ExternalLoad : LoadTableOf<double> {
   enum class Axes { kWorld, kLink };
   enum class Over { kConstant, kTime, kDriveCoordinate };
 
   int link = -1;
-  Vector3d p_L = Vector3d::Zero();  ///< point of application in the link's drawing frame [m]
   Axes axes = Axes::kWorld;
   Over over = Over::kConstant;
-  /// Rows of the table, increasing; a single row where constant. Linear between rows.
-  std::vector<double> at;
-  std::vector<Wrenchd> wrenches;
-  /// Length after which the table repeats, in units of `at`; 0 if it does not. Outside a table that
-  /// does not repeat the study is refused.
-  double period = 0;
 };
 
 /// What is to be computed: a mechanism, its motion, and what acts on it.

@@ -70,6 +70,7 @@ void ApplyMultipliers(const KinematicTree& tree, const T* mu, TreeWorkspace<T>* 
                                     std::vector<JointState<T>>*) noexcept;
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
+VMECH_INSTANTIATE(Dual4)
 VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)

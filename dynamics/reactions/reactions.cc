@@ -184,6 +184,7 @@ void ReactionSolver<T>::Solve(const std::vector<JointState<T>>& joints, const T*
 
 template class ReactionSolver<double>;
 template class ReactionSolver<Dual>;
+template class ReactionSolver<Dual4>;
 template class ReactionSolver<Lanes4>;
 
 }  // namespace vmech

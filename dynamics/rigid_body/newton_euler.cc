@@ -20,9 +20,11 @@ ScrewInertiaT<T> InertiaInWorld(const typename TreeInertias<T>::Body& body, cons
           column(1, TripleOf<T>(zero, square, zero)), column(2, TripleOf<T>(zero, zero, square))};
 }
 
-Screw MomentumOf(const TreeInertias<double>::Body& body, const Frame& X, const Screw& V) {
-  const Double4 c = PointInWorld(X, body.p_BoBcm), w_B = InverseRotate(X, V.angular);
-  const Double4 spin_B = w_B[0] * body.Ix + w_B[1] * body.Iy + w_B[2] * body.Iz;
+template <typename T>
+ScrewT<T> MomentumOf(const typename TreeInertias<T>::Body& body, const FrameT<T>& X,
+                     const ScrewT<T>& V) {
+  const Triple<T> c = PointInWorld(X, body.p_BoBcm), w_B = InverseRotate(X, V.angular);
+  const Triple<T> spin_B = w_B[0] * body.Ix + w_B[1] * body.Iy + w_B[2] * body.Iz;
   return WrenchAt(c, body.mass * VelocityAt(c, V), Rotate(X, spin_B));
 }
 
@@ -97,8 +99,8 @@ TreeInertias<T>::TreeInertias(const KinematicTree& tree, const TreeDesign<T>& de
 }
 
 template <typename T>
-void SetGravity(const Vector3d& gravity_W, TreeWorkspace<T>* ws) noexcept {
-  ws->at(-1).A.linear = TripleOf<T>(-gravity_W.cast<T>());
+void SetGravity(const std::type_identity_t<Vector3<T>>& gravity_W, TreeWorkspace<T>* ws) noexcept {
+  ws->at(-1).A.linear = TripleOf<T>(Vector3<T>(-gravity_W));
 }
 
 template <typename T>
@@ -152,12 +154,13 @@ void GeneralisedForces(const KinematicTree& tree, const TreeWorkspace<T>& ws, T*
   }
 }
 
-void Momenta(const KinematicTree& tree, const TreeInertias<double>& inertias, const double* v,
-             TreeWorkspace<double>* ws, double* momenta) noexcept {
+template <typename T>
+void Momenta(const KinematicTree& tree, const TreeInertias<T>& inertias, const T* v,
+             TreeWorkspace<T>* ws, T* momenta) noexcept {
   ForwardVelocities(tree, v, ws);
   for (size_t i = 1; i < ws->nodes.size(); ++i) {
-    TreeWorkspace<double>::Node& s = ws->nodes[i];
-    s.F = MomentumOf(inertias.in_node[i], s.X, s.V);
+    typename TreeWorkspace<T>::Node& s = ws->nodes[i];
+    s.F = MomentumOf<T>(inertias.in_node[i], s.X, s.V);
   }
   PropagateWrenches(tree, ws, momenta);
 }
@@ -202,18 +205,22 @@ VectorXd BiasForces(const KinematicTree& tree, const VectorXd& q, const VectorXd
 }
 
 // NOLINTBEGIN(bugprone-macro-parentheses): T is a type
-#define VMECH_INSTANTIATE(T)                                                                   \
-  template struct TreeInertias<T>;                                                             \
-  template void SetGravity<T>(const Vector3d&, TreeWorkspace<T>*) noexcept;                    \
-  template void BodyInertias<T>(const KinematicTree&, const TreeWorkspace<T>&,                 \
-                                TreeInertias<T>*) noexcept;                                    \
-  template void GyroscopicWrenches<T>(const KinematicTree&, const TreeInertias<T>&,            \
-                                      TreeWorkspace<T>*) noexcept;                             \
-  template void NewtonEuler<T>(const KinematicTree&, const TreeInertias<T>&, const ScrewT<T>*, \
-                               TreeWorkspace<T>*, T*) noexcept;                                \
-  template void GeneralisedForces<T>(const KinematicTree&, const TreeWorkspace<T>&, T*) noexcept;
+#define VMECH_INSTANTIATE(T)                                                                      \
+  template struct TreeInertias<T>;                                                                \
+  template void SetGravity<T>(const std::type_identity_t<Vector3<T>>&,                            \
+                              TreeWorkspace<T>*) noexcept;                                        \
+  template void BodyInertias<T>(const KinematicTree&, const TreeWorkspace<T>&,                    \
+                                TreeInertias<T>*) noexcept;                                       \
+  template void GyroscopicWrenches<T>(const KinematicTree&, const TreeInertias<T>&,               \
+                                      TreeWorkspace<T>*) noexcept;                                \
+  template void NewtonEuler<T>(const KinematicTree&, const TreeInertias<T>&, const ScrewT<T>*,    \
+                               TreeWorkspace<T>*, T*) noexcept;                                   \
+  template void GeneralisedForces<T>(const KinematicTree&, const TreeWorkspace<T>&, T*) noexcept; \
+  template void Momenta<T>(const KinematicTree&, const TreeInertias<T>&, const T*,                \
+                           TreeWorkspace<T>*, T*) noexcept;
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
+VMECH_INSTANTIATE(Dual4)
 VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)

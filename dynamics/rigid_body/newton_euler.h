@@ -1,5 +1,6 @@
 #pragma once
 
+#include <type_traits>
 #include <vector>
 
 #include "vmech/kinematics/tree/forward_kinematics.h"
@@ -40,7 +41,7 @@ struct TreeInertias {
 /// Gravity is applied by giving the ground the acceleration -g, once, so that no body needs a
 /// weight of its own.
 template <typename T>
-void SetGravity(const Vector3d& gravity_W, TreeWorkspace<T>* ws) noexcept;
+void SetGravity(const std::type_identity_t<Vector3<T>>& gravity_W, TreeWorkspace<T>* ws) noexcept;
 
 /// Inertias of the bodies. Needs X.
 template <typename T>
@@ -76,8 +77,9 @@ template <typename T>
 void GeneralisedForces(const KinematicTree& tree, const TreeWorkspace<T>& ws, T* tau) noexcept;
 /// The joints' momenta M v [nv] at velocities v [nv]: the forces that bring them there from rest in
 /// a second. Needs S; writes V and F. Quicker than to find inertias for this alone.
-void Momenta(const KinematicTree& tree, const TreeInertias<double>& inertias, const double* v,
-             TreeWorkspace<double>* ws, double* momenta) noexcept;
+template <typename T>
+void Momenta(const KinematicTree& tree, const TreeInertias<T>& inertias, const T* v,
+             TreeWorkspace<T>* ws, T* momenta) noexcept;
 
 /// Kinetic energy at V [J].
 double KineticEnergy(const KinematicTree& tree, const TreeInertias<double>& inertias,

@@ -6,7 +6,7 @@ namespace vmech {
 
 /// Generalised force of a freedom's spring and damper: -k (q - rest) - c v.
 template <typename T>
-T SpringForce(const Passive& passive, const T& position, const T& rate) {
+T SpringForce(const PassiveOf<T>& passive, const T& position, const T& rate) {
   return -passive.stiffness * (position - passive.rest) - passive.viscous * rate;
 }
 

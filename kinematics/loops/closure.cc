@@ -148,14 +148,14 @@ void DependentSolver<T>::CompleteAccelerations(const TreeWorkspace<T>& ws, T* vd
   Complete(ws, Target::kMinusBias, vdot);
 }
 
-void FreeMotions(const TreeWorkspace<double>& ws, DependentSolver<double>* dependents,
-                 MatrixXd* N) {
+template <typename T>
+void FreeMotions(const TreeWorkspace<T>& ws, DependentSolver<T>* dependents, MatrixX<T>* N) {
   const CoordinatePartition& partition = dependents->partition();
   N->setZero();
   Eigen::Index column = 0;
   for (const std::vector<int>* group : {&partition.driven, &partition.idle}) {
     for (int v : *group) {
-      (*N)(v, column) = 1;
+      (*N)(v, column) = T(1);
       dependents->CompleteVelocities(ws, N->col(column).data());
       ++column;
     }
@@ -193,13 +193,15 @@ T CloseByNewton(const KinematicTree& tree, double tolerance, int max_steps,
 }
 
 // NOLINTBEGIN(bugprone-macro-parentheses): T is a type
-#define VMECH_INSTANTIATE(T)                                                              \
-  template class DependentSolver<T>;                                                      \
-  template void EvaluatePose<T>(const KinematicTree&, const T*, TreeWorkspace<T>*, bool); \
-  template T CloseByNewton<T>(const KinematicTree&, double, int, DependentSolver<T>*,     \
+#define VMECH_INSTANTIATE(T)                                                               \
+  template class DependentSolver<T>;                                                       \
+  template void FreeMotions<T>(const TreeWorkspace<T>&, DependentSolver<T>*, MatrixX<T>*); \
+  template void EvaluatePose<T>(const KinematicTree&, const T*, TreeWorkspace<T>*, bool);  \
+  template T CloseByNewton<T>(const KinematicTree&, double, int, DependentSolver<T>*,      \
                               TreeWorkspace<T>*, T*);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
+VMECH_INSTANTIATE(Dual4)
 VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)

@@ -55,7 +55,8 @@ class DependentSolver {
 /// The motions that the loops allow, N [nv, independent]: column k moves the k-th of
 /// [driven, idle] at unit rate and the other independent velocities not at all, C N = 0. Needs
 /// LoopJacobian in ws and a factored `dependents`. `N` must have that size.
-void FreeMotions(const TreeWorkspace<double>& ws, DependentSolver<double>* dependents, MatrixXd* N);
+template <typename T>
+void FreeMotions(const TreeWorkspace<T>& ws, DependentSolver<T>* dependents, MatrixX<T>* N);
 
 /// Positions: poses, loop errors and, if asked, C.
 template <typename T>

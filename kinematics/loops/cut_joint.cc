@@ -9,13 +9,13 @@
 namespace vmech {
 namespace {
 
-Vector3<Dual> RotationVector(const Matrix3<Dual>& R) {
-  const Vector3<Dual> sine =
-      0.5 * Vector3<Dual>(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));
-  const Dual cosine = 0.5 * (R.trace() - 1.0), square = sine.squaredNorm();
-  if (square.value == 0) return sine;
-  const Dual size = sqrt(square);
-  return atan2(size, cosine) / size * sine;
+template <typename N>
+Vector3<DualOf<N>> RotationVector(const Matrix3<DualOf<N>>& R) {
+  using T = DualOf<N>;
+  const Vector3<T> sine = 0.5 * Vector3<T>(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));
+  const T cosine = 0.5 * (R.trace() - 1.0), square = sine.squaredNorm(), zero(0);
+  const T size = sqrt(square);
+  return Select(square > zero, T(atan2(size, cosine) / size), T(1)) * sine;
 }
 
 template <typename T>
@@ -136,6 +136,7 @@ Vector3<T> CutJointAccelerations(const KinematicTree& tree, const TreeWorkspace<
   template Vector3<T> CutJointAccelerations<T>(const KinematicTree&, const TreeWorkspace<T>&, int);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
+VMECH_INSTANTIATE(Dual4)
 VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)

@@ -262,6 +262,22 @@ T LargestLoopError(const KinematicTree& tree, const TreeWorkspace<T>& ws) {
   return largest;
 }
 
+template <typename T>
+LoopOpening LargestOpening(const KinematicTree& tree, const TreeWorkspace<T>& ws) {
+  LoopOpening largest;
+  for (size_t l = 0; l < tree.loops.size(); ++l) {
+    const Loop& loop = tree.loops[l];
+    for (int i = 0; i < loop.rows; ++i) {
+      const double scale = IsLengthRow(loop.type, i) ? 1 / tree.length : 1.0;
+      for (int lane = 0; lane < kLanesOf<T>; ++lane) {
+        const double slope = scale * std::abs(Lane(ws.loops[l].e2[i].slope, lane));
+        if (slope > largest.slope) largest = {slope, static_cast<int>(l)};
+      }
+    }
+  }
+  return largest;
+}
+
 // NOLINTBEGIN(bugprone-macro-parentheses): T is a type
 #define VMECH_INSTANTIATE(T)                                                                    \
   template void LoopError<T>(const Loop&, const Matrix3<T>&, const Vector3<T>&, LoopState<T>*); \
@@ -275,8 +291,11 @@ T LargestLoopError(const KinematicTree& tree, const TreeWorkspace<T>& ws) {
   template T LargestLoopError<T>(const KinematicTree&, const TreeWorkspace<T>&);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
+VMECH_INSTANTIATE(Dual4)
 VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
+template LoopOpening LargestOpening<Dual>(const KinematicTree&, const TreeWorkspace<Dual>&);
+template LoopOpening LargestOpening<Dual4>(const KinematicTree&, const TreeWorkspace<Dual4>&);
 // NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace vmech

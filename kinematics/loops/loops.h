@@ -71,6 +71,15 @@ inline bool IsLengthRow(JointType type, int row);
 template <typename T>
 T LargestLoopError(const KinematicTree& tree, const TreeWorkspace<T>& ws);
 
+/// How fast loops open with a parameter: the largest slope of their errors, scaled as
+/// LargestLoopError, and the loop that has it (-1 without loops). Of duals. Needs LoopErrors.
+struct LoopOpening {
+  double slope = 0;
+  int loop = -1;
+};
+template <typename T>
+LoopOpening LargestOpening(const KinematicTree& tree, const TreeWorkspace<T>& ws);
+
 /// Dense C [rows, nv] for the analyses that need it whole. Needs LoopJacobian.
 MatrixXd DenseLoopJacobian(const KinematicTree& tree, const TreeWorkspace<double>& ws);
 /// All e2, stacked [rows]; lengths in metres, rotations in radians.

@@ -268,6 +268,7 @@ Vector6d GraspAcceleration(const TreeWorkspace<double>& ws, int node, const Pose
   template void MoveCoordinates<T>(const KinematicTree&, const T*, T*);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
+VMECH_INSTANTIATE(Dual4)
 VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)

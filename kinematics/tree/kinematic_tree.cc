@@ -159,19 +159,46 @@ void SetNumbers(const TreeDesign<double>& design, KinematicTree* tree) {
 
 }  // namespace
 
-template <typename T>
-Design<T> DesignOf(const Mechanism& mechanism) {
-  Design<T> design;
+Design<double>::JointNumbers NumbersOf(const Joint& joint) {
+  Design<double>::JointNumbers numbers{joint.pitch, {}, joint.load_friction};
+  std::copy(joint.passive.begin(), joint.passive.end(), numbers.passive.begin());
+  return numbers;
+}
+
+Design<double> DesignOf(const Mechanism& mechanism) {
+  Design<double> design;
   for (const Link& link : mechanism.links) {
     const MassProperties& body = link.mass_properties;
-    design.links.push_back(
-        {T(body.mass), body.p_LoLcm.cast<T>(), body.I_Lcm.cast<T>(), std::vector<Pose<T>>()});
-    for (const Anchor& anchor : link.anchors) {
-      design.links.back().X_LA.push_back(anchor.X_LA.cast<T>());
-    }
+    design.links.push_back({body.mass, body.p_LoLcm, body.I_Lcm, {}});
+    for (const Anchor& anchor : link.anchors) design.links.back().X_LA.push_back(anchor.X_LA);
   }
-  for (const Joint& joint : mechanism.joints) design.pitches.push_back(T(joint.pitch));
+  for (const Joint& joint : mechanism.joints) design.joints.push_back(NumbersOf(joint));
+  design.gravity_W = mechanism.gravity_W;
   return design;
+}
+
+template <typename T>
+template <typename S>
+Design<S> Design<T>::cast() const {
+  Design<S> other;
+  for (const LinkNumbers& link : links) {
+    other.links.push_back(
+        {S(link.mass), link.p_LoLcm.template cast<S>(), link.I_Lcm.template cast<S>(), {}});
+    for (const Pose<T>& X : link.X_LA) other.links.back().X_LA.push_back(X.template cast<S>());
+  }
+  for (const JointNumbers& joint : joints) {
+    typename Design<S>::JointNumbers numbers{S(joint.pitch), {}, {}};
+    for (size_t k = 0; k < joint.passive.size(); ++k) {
+      const PassiveOf<T>& p = joint.passive[k];
+      numbers.passive[k] = {S(p.stiffness), S(p.rest), S(p.viscous), S(p.coulomb)};
+    }
+    const LoadFrictionOf<T>& f = joint.load_friction;
+    numbers.load_friction = {S(f.coefficient), S(f.radius), S(f.thrust_radius), S(f.length),
+                             S(f.width)};
+    other.joints.push_back(numbers);
+  }
+  other.gravity_W = gravity_W.template cast<S>();
+  return other;
 }
 
 // The chain of a joint leads from its inboard anchor, X_PF = X_BL X_LA R_FE, by turns of its axes,
@@ -192,7 +219,7 @@ TreeDesign<T> DesignOfTree(const KinematicTree& tree, const Design<T>& design) {
     const AnchorId& outboard = node.reversed ? joint.first : joint.second;
     const bool first = node.parent < 0 || tree.nodes[node.parent].joint != node.joint;
     typename TreeDesign<T>::NodeNumbers numbers;
-    numbers.pitch = design.pitches[node.joint];
+    numbers.pitch = design.joints[node.joint].pitch;
     numbers.X_PF =
         (first ? in_node(inboard) : PureRotation<T>(tree.nodes[node.parent].R_FE.transpose())) *
         PureRotation<T>(node.R_FE);
@@ -207,7 +234,8 @@ TreeDesign<T> DesignOfTree(const KinematicTree& tree, const Design<T>& design) {
   }
   for (size_t j = 0; j < tree.mechanism.joints.size(); ++j) {
     const Joint& joint = tree.mechanism.joints[j];
-    placed.placements.push_back({in_node(joint.first), in_node(joint.second), design.pitches[j]});
+    placed.placements.push_back(
+        {in_node(joint.first), in_node(joint.second), design.joints[j].pitch});
   }
   return placed;
 }
@@ -240,7 +268,7 @@ KinematicTree BuildKinematicTree(Mechanism mechanism, const SpanningTreeOptions&
   Builder builder(&tree);
   for (const SpanningTree::Branch& branch : tree.spanning.branches) builder.AddBranch(branch);
   builder.PlaceAnchors();
-  SetNumbers(DesignOfTree(tree, DesignOf<double>(tree.mechanism)), &tree);
+  SetNumbers(DesignOfTree(tree, DesignOf(tree.mechanism)), &tree);
   for (int joint : tree.spanning.cuts) builder.AddLoop(joint);
   tree.reference = CentroidOfGround(tree);
   return tree;
@@ -315,13 +343,16 @@ int CoordinateIndex(const KinematicTree& tree, int joint, int freedom) {
 
 // NOLINTBEGIN(bugprone-macro-parentheses): T is a type
 #define VMECH_INSTANTIATE(T)                                                      \
-  template Design<T> DesignOf<T>(const Mechanism&);                               \
+  template Design<T> Design<double>::cast<T>() const;                             \
   template TreeDesign<T> DesignOfTree<T>(const KinematicTree&, const Design<T>&); \
   template TreeDesign<T> DesignOfTree<T>(const KinematicTree&);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
+VMECH_INSTANTIATE(Dual4)
 VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
+template Design<Dual> Design<Dual>::cast<Dual>() const;
+template Design<Dual4> Design<Dual>::cast<Dual4>() const;
 // NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace vmech

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "vmech/mechanisms/graph.h"
@@ -110,11 +111,20 @@ struct Design {
     Matrix3<T> I_Lcm;
     std::vector<Pose<T>> X_LA;  ///< anchors
   };
+  struct JointNumbers {
+    T pitch;
+    std::array<PassiveOf<T>, 3> passive;  ///< per freedom
+    LoadFrictionOf<T> load_friction;
+  };
   std::vector<LinkNumbers> links;
-  std::vector<T> pitches;  ///< of joints
+  std::vector<JointNumbers> joints;
+  Vector3<T> gravity_W;
+
+  template <typename S>
+  Design<S> cast() const;
 };
-template <typename T>
-Design<T> DesignOf(const Mechanism& mechanism);
+Design<double>::JointNumbers NumbersOf(const Joint& joint);
+Design<double> DesignOf(const Mechanism& mechanism);
 
 /// The same as nodes and placements have them: the fields of these names there.
 template <typename T>

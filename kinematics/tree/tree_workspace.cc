@@ -40,6 +40,7 @@ TreeWorkspace<T>::TreeWorkspace(const KinematicTree& tree, const TreeDesign<T>& 
 
 template struct TreeWorkspace<double>;
 template struct TreeWorkspace<Dual>;
+template struct TreeWorkspace<Dual4>;
 template struct TreeWorkspace<Lanes4>;
 
 }  // namespace vmech

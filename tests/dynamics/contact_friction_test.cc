@@ -200,7 +200,7 @@ TEST(ContactFriction, NeverDrivesTheMechanism) {
     for (int i = 0; i < 200; ++i) {
       Vector3d rate = vector();
       rate.tail(3 - FreedomsOf(type)).setZero();
-      const Vector3d limits = FrictionLimits<double>(joint, {vector(), vector()}, vector(), rate);
+      const Vector3d limits = FrictionLimits(joint, {vector(), vector()}, vector(), rate);
       EXPECT_LT(SlidingFriction<double>(type, limits, rate).dot(rate), 0);
     }
   }

@@ -1,161 +1,209 @@
-// Derivatives of joint loads by dimensions and masses, taken through the kernels by dual numbers,
-// against differences of whole studies of changed mechanisms.
+// Derivatives of joint loads by numbers of a study, taken through the kernels by dual numbers,
+// against differences of whole studies that are changed.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <string>
 
 #include "dynamics/driven_examples.h"
-#include "vmech/base/dual.h"
-#include "vmech/dynamics/loads/pose/pose_loads.h"
 #include "vmech/dynamics/loads/prepare_study.h"
 #include "vmech/dynamics/loads/run_load_study.h"
 #include "vmech/dynamics/loads/track_motion.h"
+#include "vmech/dynamics/sensitivity/load_derivatives.h"
+#include "vmech/dynamics/sensitivity/study_change.h"
 
 namespace vmech {
 namespace {
 
-constexpr double kExact = 1e-9;    // relative to the largest load: what differences resolve
-constexpr size_t kPose = 12;       // of the study
+constexpr double kExact = 1e-8;    // relative to the largest load: what differences resolve
 constexpr double kClosed = 1e-14;  // of poses that differences are taken of
+constexpr double kStep = 2e-3;     // of the parameters, which are shares of what the file has
 
-/// What is changed: the same in a mechanism and in the slopes of a design.
-struct Parameter {
-  std::function<void(double by, Mechanism*)> change;
-  std::function<void(const Mechanism&, Design<Dual>*)> seed;
-};
+/// A change of a study by a share of what it is.
+using Change = std::function<void(double by, LoadStudy*)>;
 
 /// All lengths together: whatever loops a mechanism has stay closed.
-Parameter Size() {
-  return {[](double by, Mechanism* mechanism) {
-            for (Link& link : mechanism->links) {
-              for (Anchor& anchor : link.anchors) anchor.X_LA.p *= 1 + by;
-            }
-          },
-          [](const Mechanism& mechanism, Design<Dual>* design) {
-            for (size_t l = 0; l < mechanism.links.size(); ++l) {
-              for (size_t a = 0; a < mechanism.links[l].anchors.size(); ++a) {
-                const Vector3d& p = mechanism.links[l].anchors[a].X_LA.p;
-                for (int k = 0; k < 3; ++k) design->links[l].X_LA[a].p[k].slope = p[k];
-              }
-            }
-          }};
+void ChangeSize(double by, LoadStudy* study) {
+  for (Link& link : study->mechanism.links) {
+    for (Anchor& anchor : link.anchors) anchor.X_LA.p *= 1 + by;
+  }
 }
 
-/// Mass and inertia of one link.
-Parameter MassOf(const std::string& name) {
-  return {[name](double by, Mechanism* mechanism) {
-            MassProperties& body = mechanism->links[FindLink(*mechanism, name)].mass_properties;
-            body.mass *= 1 + by;
-            body.I_Lcm *= 1 + by;
-          },
-          [name](const Mechanism& mechanism, Design<Dual>* design) {
-            Design<Dual>::LinkNumbers& link = design->links[FindLink(mechanism, name)];
-            link.mass.slope = link.mass.value;
-            for (Dual& entry : link.I_Lcm.reshaped()) entry.slope = entry.value;
-          }};
+/// Everything but the geometry: bodies, springs, dampers, friction, weight, speed and push.
+void ChangeForces(double by, LoadStudy* study) {
+  for (Link& link : study->mechanism.links) {
+    MassProperties& body = link.mass_properties;
+    body.mass *= 1 + by;
+    body.I_Lcm *= 1 + 2 * by;
+    body.p_LoLcm *= 1 - by;
+  }
+  for (Joint& joint : study->mechanism.joints) {
+    for (Passive& passive : joint.passive) {
+      passive.stiffness *= 1 + 3 * by;
+      passive.rest += 0.1 * by;
+      passive.viscous *= 1 - 2 * by;
+      passive.coulomb *= 1 + by;
+    }
+    joint.load_friction.coefficient *= 1 + by;
+    joint.load_friction.radius *= 1 - by;
+    joint.load_friction.length *= 1 + by;
+  }
+  study->mechanism.gravity_W += by * Vector3d(1, 2, 3);
+  for (ExternalLoad& load : study->external) {
+    load.p_L += by * Vector3d(0.01, 0.02, -0.03);
+    for (Wrenchd& W : load.wrenches) W.force *= 1 - by;
+  }
 }
 
-/// The length of a link: where its last anchor is.
-Parameter LengthOf(const std::string& name) {
-  return {[name](double by, Mechanism* mechanism) {
-            mechanism->links[FindLink(*mechanism, name)].anchors.back().X_LA.p *= 1 + by;
-          },
-          [name](const Mechanism& mechanism, Design<Dual>* design) {
-            const int link = FindLink(mechanism, name);
-            const Vector3d& p = mechanism.links[link].anchors.back().X_LA.p;
-            for (int k = 0; k < 3; ++k) design->links[link].X_LA.back().p[k].slope = p[k];
-          }};
+/// The same path in less time.
+void ChangeSpeed(double by, LoadStudy* study) {
+  for (double& time : study->times) time /= 1 + by;
+  for (JointDrive& drive : study->drives) {
+    const MotionSample start = drive.law.At(0);
+    drive.law = MotionLaw::Uniform(start.position, start.velocity * (1 + by),
+                                   start.acceleration * (1 + by) * (1 + by));
+  }
 }
 
-/// All joint wrenches at one pose, [6 joints].
+StudyAt Changed(const LoadStudy& study, const Change& change) {
+  return [&study, change](double by) {
+    LoadStudy changed = study;
+    change(by, &changed);
+    return changed;
+  };
+}
+
+/// All joint wrenches and drive forces of a study.
 VectorXd Loads(const LoadStudy& study) {
-  const PreparedStudy prepared = PrepareStudy(study);
-  const Motion motion = TrackMotion(study, prepared, kClosed);
-  LoadWorkspace<double> ws(prepared.model);
-  EXPECT_TRUE(EvaluatePoseLoads(prepared.model, motion, kPose, &ws));
-  VectorXd loads(6 * ws.loads.size());
-  for (size_t j = 0; j < ws.loads.size(); ++j) loads.segment<6>(6 * j) = ws.loads[j].W_F.Stacked();
-  return loads;
-}
-
-VectorXd LoadsOf(const std::string& example, const Parameter& parameter, double by) {
-  LoadStudy study = StudyOf(example);
-  parameter.change(by, &study.mechanism);
-  return Loads(study);
+  LoadStudyOptions options;
+  options.closure_tolerance = kClosed;
+  const LoadStudyResult result = RunLoadStudy(study, options);
+  const LoadArrays& loads = result.poses.arrays();
+  VectorXd all(loads.wrenches.size() + loads.drive_forces.size());
+  all << Eigen::Map<const VectorXd>(loads.wrenches.data(), loads.wrenches.size()),
+      Eigen::Map<const VectorXd>(loads.drive_forces.data(), loads.drive_forces.size());
+  return all;
 }
 
 /// By a stencil of sixth order.
-VectorXd Difference(const std::string& example, const Parameter& parameter) {
-  constexpr double h = 2e-3;
+VectorXd Difference(const StudyAt& at) {
   const auto change = [&](int k) -> VectorXd {
-    return LoadsOf(example, parameter, k * h) - LoadsOf(example, parameter, -k * h);
+    return Loads(at(k * kStep)) - Loads(at(-k * kStep));
   };
-  return (45 * change(1) - 9 * change(2) + change(3)) / (60 * h);
+  return (45 * change(1) - 9 * change(2) + change(3)) / (60 * kStep);
 }
 
-VectorXd Slopes(const std::string& example, const Parameter& parameter) {
-  const LoadStudy study = StudyOf(example);
+VectorXd Slopes(const LoadStudy& study, const StudyAt& at) {
   const PreparedStudy prepared = PrepareStudy(study);
   const Motion motion = TrackMotion(study, prepared, kClosed);
-  const KinematicTree& tree = prepared.model.tree;
-  Design<Dual> design = DesignOf<Dual>(tree.mechanism);
-  parameter.seed(tree.mechanism, &design);
-  LoadWorkspace<Dual> ws(prepared.model, DesignOfTree(tree, design));
-  EXPECT_TRUE(EvaluatePoseLoads(prepared.model, motion, kPose, &ws));
-  VectorXd slopes(6 * ws.loads.size());
-  for (size_t j = 0; j < ws.loads.size(); ++j) {
-    const Vector6<Dual> W = ws.loads[j].W_F.Stacked();
-    for (int k = 0; k < 6; ++k) slopes[6 * j + k] = W[k].slope;
-  }
-  return slopes;
+  const StudyChange change = ChangeOfStudy(prepared, motion, at, 0, 1e-3);
+  const LoadDerivatives loads = DifferentiateLoads(prepared, motion, change);
+  VectorXd all(loads.wrenches.size() + loads.drive_forces.size());
+  double* next = all.data();
+  for (const Dual& component : loads.wrenches) *next++ = component.slope;
+  for (const Dual& force : loads.drive_forces) *next++ = force.slope;
+  return all;
 }
 
 /// Zero where statics does not determine a component: the rule that settles it goes by the size of
-/// the mechanism, which a design's slopes leave alone.
+/// the mechanism, which slopes leave alone.
 VectorXd CertainPart(const LoadStudyResult& result, VectorXd loads) {
-  for (size_t j = 0; j < result.certainty.size(); ++j) {
-    for (int k = 0; k < 6; ++k) {
-      if (result.certainty[j][k] != Certainty::kCertain) loads[6 * j + k] = 0;
+  const size_t joints = result.certainty.size();
+  for (size_t i = 0; i < result.poses.size(); ++i) {
+    for (size_t j = 0; j < joints; ++j) {
+      for (size_t k = 0; k < 6; ++k) {
+        if (result.certainty[j][k] != Certainty::kCertain) loads[6 * (i * joints + j) + k] = 0;
+      }
     }
   }
   return loads;
 }
 
-void ExpectSameDerivative(const std::string& example, const Parameter& parameter) {
-  const LoadStudyResult result = RunLoadStudy(StudyOf(example));
-  const VectorXd slopes = CertainPart(result, Slopes(example, parameter));
-  const VectorXd differences = CertainPart(result, Difference(example, parameter));
-  const double scale = Loads(StudyOf(example)).lpNorm<Eigen::Infinity>();
+void ExpectSameDerivative(const LoadStudy& study, const Change& change) {
+  const LoadStudyResult result = RunLoadStudy(study);
+  const StudyAt at = Changed(study, change);
+  const VectorXd slopes = CertainPart(result, Slopes(study, at));
+  const VectorXd differences = CertainPart(result, Difference(at));
+  const double scale = CertainPart(result, Loads(study)).lpNorm<Eigen::Infinity>();
   EXPECT_LE((slopes - differences).lpNorm<Eigen::Infinity>(),
             kExact * (scale + slopes.lpNorm<Eigen::Infinity>()));
 }
 
-TEST(DesignDerivatives, OfTheSliderCrankByTheLengthOfItsCrank) {
-  ExpectSameDerivative("slider-crank", LengthOf("crank"));
-}
-
-TEST(DesignDerivatives, OfTheSliderCrankByTheMassOfItsSlider) {
-  ExpectSameDerivative("slider-crank", MassOf("slider"));
-}
-
-/// Those whose poses need no dense system of their own, as local freedoms do.
-std::vector<DrivenExample> ExamplesWithoutLocalFreedoms() {
-  std::vector<DrivenExample> examples = DrivenExamples();
-  std::erase_if(examples, [](const DrivenExample& example) {
-    return !RunsInLanes(PrepareStudy(StudyOf(example.name)).model);
-  });
-  return examples;
-}
-
-class EveryDesign : public testing::TestWithParam<DrivenExample> {};
+class EveryDesign : public testing::TestWithParam<DrivenExample> {
+ protected:
+  const LoadStudy study_ = StudyOf(GetParam().name);
+};
 
 TEST_P(EveryDesign, HasTheDerivativeBySizeThatDifferencesHave) {
-  ExpectSameDerivative(GetParam().name, Size());
+  ExpectSameDerivative(study_, ChangeSize);
 }
 
-INSTANTIATE_TEST_SUITE_P(Examples, EveryDesign, testing::ValuesIn(ExamplesWithoutLocalFreedoms()),
+TEST_P(EveryDesign, HasTheDerivativeByForcesThatDifferencesHave) {
+  ExpectSameDerivative(study_, ChangeForces);
+  EXPECT_GT(Slopes(study_, Changed(study_, ChangeForces)).lpNorm<Eigen::Infinity>(), 0);
+}
+
+TEST_P(EveryDesign, HasTheDerivativeBySpeedThatDifferencesHave) {
+  ExpectSameDerivative(study_, ChangeSpeed);
+}
+
+INSTANTIATE_TEST_SUITE_P(Examples, EveryDesign, testing::ValuesIn(DrivenExamples()),
                          [](const auto& info) { return TestName(info.param.name); });
+
+/// The length of a link: where its last anchor is.
+Change LengthOf(const std::string& name) {
+  return [name](double by, LoadStudy* study) {
+    Mechanism& mechanism = study->mechanism;
+    mechanism.links[FindLink(mechanism, name)].anchors.back().X_LA.p *= 1 + by;
+  };
+}
+
+TEST(DesignDerivatives, OfTheSliderCrankByTheLengthOfItsCrank) {
+  ExpectSameDerivative(StudyOf("slider-crank"), LengthOf("crank"));
+}
+
+TEST(DesignDerivatives, OfALoadThatGoesByTheDrivesCoordinate) {
+  LoadStudy study = StudyOf("slider-crank");
+  ExternalLoad& load = study.external[0];
+  load.over = ExternalLoad::Over::kDriveCoordinate;
+  load.at = {-20, -1, 0.3, 20};
+  load.wrenches = {{{1, 2, 0}, {0, 0, 0}},
+                   {{30, -20, 0}, {0, 0, 1}},
+                   {{-70, 15, 0}, {0, 0, 2}},
+                   {{5, 80, 0}, {0, 0, 0}}};
+  ExpectSameDerivative(study, ChangeForces);
+  ExpectSameDerivative(study, [](double by, LoadStudy* changed) {
+    for (double& at : changed->external[0].at) at += by;
+  });
+}
+
+/// Runs a study with this change and returns what is said against it.
+std::string Refusal(const LoadStudy& study, const Change& change) {
+  try {
+    Slopes(study, Changed(study, change));
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(DesignDerivatives, AreRefusedWhereTheLoopOpens) {
+  // A planar four-bar whose rod leaves the plane.
+  const auto lift = [](double by, LoadStudy* study) {
+    Mechanism& mechanism = study->mechanism;
+    mechanism.links[FindLink(mechanism, "coupler")].anchors.back().X_LA.p.z() += by;
+  };
+  EXPECT_THAT(Refusal(StudyOf("four-bar"), lift), testing::HasSubstr("cannot stay closed"));
+}
+
+TEST(DesignDerivatives, AreRefusedWhereTheStudyTakesAnotherForm) {
+  const auto longer = [](double by, LoadStudy* study) {
+    if (by > 0) study->times.push_back(study->times.back() + 1);
+  };
+  EXPECT_THAT(Refusal(StudyOf("four-bar"), longer), testing::HasSubstr("another form"));
+}
 
 }  // namespace
 }  // namespace vmech

@@ -1,11 +1,11 @@
 #include "vmech/dynamics/loads/load_arrays.h"
+#include "vmech/base/lanes4.h"
 
 #include <gtest/gtest.h>
 
 #include <numeric>
 
 #include "driven_examples.h"
-#include "vmech/base/store_lanes.h"
 #include "vmech/dynamics/loads/run_load_study.h"
 
 namespace vmech {

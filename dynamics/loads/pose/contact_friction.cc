@@ -23,18 +23,24 @@ Vector3<T> Across(const Vector3<T>& axis, const Vector3<T>& v) {
   return v - axis * axis.dot(v);
 }
 
+/// Is a length of the contact not given? It is the same in all lanes.
+template <typename T>
+bool IsZero(const T& length) {
+  return Lane(length, 0) == 0;
+}
+
 /// S(a): the load of the supports across the axis.
 template <typename T>
-T SupportLoad(const Vector3<T>& axis, const Wrench<T>& W, double length) {
+T SupportLoad(const Vector3<T>& axis, const Wrench<T>& W, const T& length) {
   const Vector3<T> across = Across(axis, W.force);
-  if (length == 0) return Norm(across);
-  const Vector3<T> half = T(0.5) * across, couple = axis.cross(W.moment) * T(1 / length);
+  if (IsZero(length)) return Norm(across);
+  const Vector3<T> half = T(0.5) * across, couple = axis.cross(W.moment) * (T(1) / length);
   return Norm<T>(half + couple) + Norm<T>(half - couple);
 }
 
 /// A pin with collars: mu (r S(a) + r_t |F.a|).
 template <typename T>
-T PinLimit(const LoadFriction& friction, const Vector3<T>& axis, const Wrench<T>& W) {
+T PinLimit(const LoadFrictionOf<T>& friction, const Vector3<T>& axis, const Wrench<T>& W) {
   using std::abs;
   return friction.coefficient * (friction.radius * SupportLoad(axis, W, friction.length) +
                                  friction.thrust_radius * abs(axis.dot(W.force)));
@@ -49,30 +55,30 @@ Vector3<T> SecondPin(const T& first_angle) {
 }
 
 template <typename T>
-T ThreadLimit(const Joint& joint, const Wrench<T>& W, const T& rate) {
+T ThreadLimit(const typename Design<T>::JointNumbers& numbers, const Wrench<T>& W, const T& rate) {
   using std::abs, std::max;
-  const LoadFriction& friction = joint.load_friction;
-  const double slope = std::abs(joint.pitch) / friction.radius;
-  const T raising = W.force.z() * (joint.pitch * rate), zero(0);
+  const LoadFrictionOf<T>& friction = numbers.load_friction;
+  const T slope = abs(numbers.pitch) / friction.radius;
+  const T raising = W.force.z() * (numbers.pitch * rate), zero(0);
   const T sense = Select(raising > zero, T(1), Select(raising < zero, T(-1), zero));
   const T steepness = max(T(1) - friction.coefficient * slope * sense, T(kSteepest));
-  return friction.coefficient * friction.radius * (1 + slope * slope) * abs(W.force.z()) /
+  return friction.coefficient * friction.radius * (T(1) + slope * slope) * abs(W.force.z()) /
          steepness;
 }
 
 /// What the load adds to the limits.
 template <typename T>
-Vector3<T> LoadLimits(const Joint& joint, const Wrench<T>& W, const Vector3<T>& position,
-                      const Vector3<T>& rate) {
+Vector3<T> LoadLimits(JointType type, const typename Design<T>::JointNumbers& numbers,
+                      const Wrench<T>& W, const Vector3<T>& position, const Vector3<T>& rate) {
   using std::abs;
-  const LoadFriction& friction = joint.load_friction;
-  const T mu(friction.coefficient), zero(0);
+  const LoadFrictionOf<T>& friction = numbers.load_friction;
+  const T mu = friction.coefficient, zero(0);
   const Vector3<T> x = Vector3<T>::UnitX(), z = Vector3<T>::UnitZ();
-  switch (joint.type) {
+  switch (type) {
     case JointType::kRevolute:
       return {PinLimit(friction, z, W), zero, zero};
     case JointType::kPrismatic: {
-      const T sides = friction.width == 0 ? zero : T(2 / friction.width) * abs(W.moment.z());
+      const T sides = IsZero(friction.width) ? zero : T(2) / friction.width * abs(W.moment.z());
       return {mu * (SupportLoad(z, W, friction.length) + sides), zero, zero};
     }
     case JointType::kCylindrical: {
@@ -81,7 +87,7 @@ Vector3<T> LoadLimits(const Joint& joint, const Wrench<T>& W, const Vector3<T>& 
     }
     case JointType::kScrew: {
       const T radial = mu * friction.radius * SupportLoad(z, W, friction.length);
-      return {radial + ThreadLimit(joint, W, rate[0]), zero, zero};
+      return {radial + ThreadLimit(numbers, W, rate[0]), zero, zero};
     }
     case JointType::kUniversal:
       return {PinLimit(friction, x, W), PinLimit(friction, SecondPin(position[0]), W), zero};
@@ -111,14 +117,20 @@ SlidingContacts ContactsOf(JointType type) {
 }
 
 template <typename T>
-Vector3<T> FrictionLimits(const Joint& joint, const Wrench<T>& W_F, const Vector3<T>& position,
+Vector3<T> FrictionLimits(JointType type, const typename Design<T>::JointNumbers& numbers,
+                          const Wrench<T>& W_F, const Vector3<T>& position,
                           const Vector3<T>& rate) {
   Vector3<T> limits = Vector3<T>::Zero();
-  if (joint.load_friction.coefficient != 0) limits = LoadLimits(joint, W_F, position, rate);
-  for (size_t i = 0; i < joint.passive.size(); ++i) {
-    limits[static_cast<int>(i)] += joint.passive[i].coulomb;
+  if (!IsZero(numbers.load_friction.coefficient)) {
+    limits = LoadLimits(type, numbers, W_F, position, rate);
   }
+  for (int i = 0; i < 3; ++i) limits[i] += numbers.passive[i].coulomb;
   return limits;
+}
+
+Vector3d FrictionLimits(const Joint& joint, const Wrenchd& W_F, const Vector3d& position,
+                        const Vector3d& rate) {
+  return FrictionLimits<double>(joint.type, NumbersOf(joint), W_F, position, rate);
 }
 
 template <typename T>
@@ -210,13 +222,14 @@ std::array<UnaccountedLoad, 2> UnaccountedLoads(const Joint& joint, const Wrench
 }
 
 // NOLINTBEGIN(bugprone-macro-parentheses): T is a type
-#define VMECH_INSTANTIATE(T)                                                               \
-  template Vector3<T> FrictionLimits<T>(const Joint&, const Wrench<T>&, const Vector3<T>&, \
-                                        const Vector3<T>&);                                \
-  template Vector3<T> SlidingRates<T>(JointType, const Vector3<T>&, double, double);       \
+#define VMECH_INSTANTIATE(T)                                                                     \
+  template Vector3<T> FrictionLimits<T>(JointType, const typename Design<T>::JointNumbers&,      \
+                                        const Wrench<T>&, const Vector3<T>&, const Vector3<T>&); \
+  template Vector3<T> SlidingRates<T>(JointType, const Vector3<T>&, double, double);             \
   template Vector3<T> SlidingFriction<T>(JointType, const Vector3<T>&, const Vector3<T>&);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
+VMECH_INSTANTIATE(Dual4)
 VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)

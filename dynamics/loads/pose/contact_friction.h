@@ -2,12 +2,14 @@
 
 #include <array>
 
+#include "vmech/kinematics/tree/kinematic_tree.h"
 #include "vmech/mechanisms/mechanism.h"
 
 namespace vmech {
 
 /// Dry friction of a joint: what its sliding contacts can exert, and in which direction. The law of
-/// every joint type is here and nowhere else. T: double, or Lanes4 for four poses.
+/// every joint type is here and nowhere else. T: double, Lanes4 for four poses, or
+/// duals.
 ///
 /// Each freedom i has a limit f_i = coulomb_i + mu N_i L_i [N] or [N m], with N the load of the
 /// contact [N], mu the coefficient and L its lever (1 for a shift, a radius for a turn):
@@ -54,8 +56,10 @@ SlidingContacts ContactsOf(JointType type);
 /// The limits f of a joint that carries W_F (about M, axes of F) and moves at `rate`. Of a screw
 /// the sense of the motion counts: it tells raising from lowering.
 template <typename T>
-Vector3<T> FrictionLimits(const Joint& joint, const Wrench<T>& W_F, const Vector3<T>& position,
-                          const Vector3<T>& rate);
+Vector3<T> FrictionLimits(JointType type, const typename Design<T>::JointNumbers& numbers,
+                          const Wrench<T>& W_F, const Vector3<T>& position, const Vector3<T>& rate);
+Vector3d FrictionLimits(const Joint& joint, const Wrenchd& W_F, const Vector3d& position,
+                        const Vector3d& rate);
 
 /// The rates of a joint with those of contacts at rest made zero: a contact rests where all of it
 /// is slower than `slowest` [rad/s], lengths divided by `length` [m].

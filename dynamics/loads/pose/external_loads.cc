@@ -16,20 +16,25 @@ bool OutsideTable(const ExternalLoad& load, double at) {
   return at < load.at.front() - slack || at > load.at.back() + slack;
 }
 
-Wrenchd WrenchAt(const ExternalLoad& load, double at) {
-  const std::vector<double>& x = load.at;
-  if (load.over == ExternalLoad::Over::kConstant || x.size() < 2) return load.wrenches.front();
-  if (load.period > 0) at -= load.period * std::floor((at - x.front()) / load.period);
+template <typename T>
+Wrench<T> WrenchAt(ExternalLoad::Over over, const LoadTableOf<T>& table, T at) {
+  const std::vector<T>& x = table.at;
+  if (over == ExternalLoad::Over::kConstant || x.size() < 2) return table.wrenches.front();
+  const T zero(0), one(1);
+  if (table.period > zero) {
+    at -= table.period * std::floor(Lane((at - x.front()) / table.period, 0));
+  }
   const auto after = std::upper_bound(x.begin(), x.end(), at);
   size_t i = after == x.begin() ? 0 : static_cast<size_t>(after - x.begin()) - 1;
   // Behind the last row a repeating table leads back to its first.
-  const bool wraps = load.period > 0 && i + 1 == x.size();
+  const bool wraps = table.period > zero && i + 1 == x.size();
   if (!wraps) i = std::min(i, x.size() - 2);
   const size_t next = wraps ? 0 : i + 1;
-  const double width = wraps ? x.front() + load.period - x.back() : x[next] - x[i];
-  const double s = width > 0 ? std::clamp((at - x[i]) / width, 0.0, 1.0) : 0.0;
-  const Wrenchd &a = load.wrenches[i], &b = load.wrenches[next];
-  return {(1 - s) * a.force + s * b.force, (1 - s) * a.moment + s * b.moment};
+  const T width = wraps ? T(x.front() + table.period - x.back()) : T(x[next] - x[i]);
+  const T s = width > zero ? T((at - x[i]) / width) : zero;
+  const T share = s < zero ? zero : one < s ? one : s;
+  const Wrench<T>&a = table.wrenches[i], &b = table.wrenches[next];
+  return {(one - share) * a.force + share * b.force, (one - share) * a.moment + share * b.moment};
 }
 
 double TableArgument(const LoadModel& model, const ExternalLoad& load, const Motion& motion,
@@ -45,14 +50,64 @@ double TableArgument(const LoadModel& model, const ExternalLoad& load, const Mot
   return 0;
 }
 
+namespace {
+
+/// The slope of TableArgument.
+double ArgumentSlope(const LoadModel& model, const ExternalLoad& load,
+                     const PrescribedSlopes& slopes, size_t pose) {
+  switch (load.over) {
+    case ExternalLoad::Over::kTime:
+      return slopes.times[pose];
+    case ExternalLoad::Over::kDriveCoordinate:
+      return slopes.drives[pose * model.drives.size()].position;
+    case ExternalLoad::Over::kConstant:
+      break;
+  }
+  return 0;
+}
+
+/// The wrench of a load at one pose, in its own axes; of duals with its slope.
+template <typename T>
+auto WrenchAtPose(const LoadModel& model, const Motion& motion, size_t pose, size_t i,
+                  const PrescribedSlopes* slopes) {
+  const ExternalLoad& load = model.external[i];
+  const double at = TableArgument(model, load, motion, pose);
+  if constexpr (kIsDual<T>) {
+    if (slopes == nullptr) {
+      const Wrenchd W = WrenchAt(load, at);
+      return Wrench<Dual>{W.force.cast<Dual>(), W.moment.cast<Dual>()};
+    }
+    const Dual argument(at, ArgumentSlope(model, load, *slopes, pose));
+    return WrenchAt<Dual>(load.over, slopes->external[i], argument);
+  } else {
+    return WrenchAt(load, at);
+  }
+}
+
+template <typename T>
+Vector3<T> PointOfApplication(const ExternalLoad& load, size_t i, const PrescribedSlopes* slopes) {
+  if constexpr (kIsDual<T>) {
+    if (slopes != nullptr) {
+      const Vector3<Dual>& p = slopes->external[i].p_L;
+      Vector3<T> point;
+      for (int k = 0; k < 3; ++k) point[k] = FromLanes<T>([&](int) { return p[k]; });
+      return point;
+    }
+  }
+  return load.p_L.cast<T>();
+}
+
+}  // namespace
+
 template <typename T>
 void EvaluateExternalLoads(const LoadModel& model, const Motion& motion, size_t pose,
                            LoadWorkspace<T>* ws) {
   for (size_t i = 0; i < model.external.size(); ++i) {
     const ExternalLoad& load = model.external[i];
-    Wrenchd lanes[kLanesOf<T>];
+    using OneWrench = decltype(WrenchAtPose<T>(model, motion, pose, i, ws->slopes));
+    OneWrench lanes[kLanesOf<T>];
     for (int lane = 0; lane < kLanesOf<T>; ++lane) {
-      lanes[lane] = WrenchAt(load, TableArgument(model, load, motion, pose + lane));
+      lanes[lane] = WrenchAtPose<T>(model, motion, pose + lane, i, ws->slopes);
     }
     Wrench<T> W;
     for (int k = 0; k < 3; ++k) {
@@ -64,16 +119,21 @@ void EvaluateExternalLoads(const LoadModel& model, const Motion& motion, size_t 
     const FrameT<T> L = ws->tree.at(node).X * ws->tree.at(node).X_BL;
     FrameT<T> at;
     if (load.axes == ExternalLoad::Axes::kLink) at = L;
-    at.p = PointInWorld(L, TripleOf<T>(load.p_L.cast<T>()));
+    at.p = PointInWorld(L, TripleOf<T>(PointOfApplication<T>(load, i, ws->slopes)));
     ws->external[i] = WrenchFrom(at, W);
   }
 }
 
-template void EvaluateExternalLoads<double>(const LoadModel&, const Motion&, size_t,
-                                            LoadWorkspace<double>*);
-template void EvaluateExternalLoads<Dual>(const LoadModel&, const Motion&, size_t,
-                                          LoadWorkspace<Dual>*);
-template void EvaluateExternalLoads<Lanes4>(const LoadModel&, const Motion&, size_t,
-                                            LoadWorkspace<Lanes4>*);
+// NOLINTBEGIN(bugprone-macro-parentheses): T is a type
+#define VMECH_INSTANTIATE(T)                                                      \
+  template void EvaluateExternalLoads<T>(const LoadModel&, const Motion&, size_t, \
+                                         LoadWorkspace<T>*);
+VMECH_INSTANTIATE(double)
+VMECH_INSTANTIATE(Dual)
+VMECH_INSTANTIATE(Dual4)
+VMECH_INSTANTIATE(Lanes4)
+#undef VMECH_INSTANTIATE
+// NOLINTEND(bugprone-macro-parentheses)
+template Wrenchd WrenchAt<double>(ExternalLoad::Over, const LoadTableOf<double>&, double);
 
 }  // namespace vmech

@@ -7,9 +7,13 @@
 
 namespace vmech {
 
-/// The load's wrench at a value of its table's argument, in its own axes. Linear between rows.
-/// Precondition: inside the table, unless it repeats (LoadOutsideTable).
-Wrenchd WrenchAt(const ExternalLoad& load, double at);
+/// A load's wrench at a value of its table's argument, in its own axes. Linear between rows.
+/// Precondition: inside the table, unless it repeats (OutsideTable). T: double or Dual.
+template <typename T>
+Wrench<T> WrenchAt(ExternalLoad::Over over, const LoadTableOf<T>& table, T at);
+inline Wrenchd WrenchAt(const ExternalLoad& load, double at) {
+  return WrenchAt<double>(load.over, load, at);
+}
 /// Is the argument outside a table that does not repeat?
 bool OutsideTable(const ExternalLoad& load, double at);
 /// Time, the first drive's coordinate, or zero: the argument of a load's table at a pose.

@@ -14,43 +14,68 @@ constexpr double kFirstRelaxation = 0.25;
 constexpr int kMixed = 8;             // iterates
 constexpr double kTolerance = 1e-13;  // change of the largest joint load, relative
 
-void Read(const std::vector<JointLoad<double>>& loads, double length, VectorXd* x) {
-  x->resize(static_cast<Eigen::Index>(6 * loads.size()));
-  for (size_t j = 0; j < loads.size(); ++j) {
-    const Wrenchd& W = loads[j].W_F;
-    x->segment<6>(static_cast<Eigen::Index>(6 * j)) << W.force, W.moment / length;
-  }
-}
-
-void Write(const VectorXd& x, double length, std::vector<JointLoad<double>>* loads) {
-  for (size_t j = 0; j < loads->size(); ++j) {
-    const auto at = static_cast<Eigen::Index>(6 * j);
-    (*loads)[j].W_F = {x.segment<3>(at), x.segment<3>(at + 3) * length};
+/// Calls visit(number, unit) for each component of the loads' wrenches; dividing by the unit makes
+/// moments forces.
+template <typename T, typename Visit>
+void VisitWrenches(double length, std::vector<JointLoad<T>>* loads, const Visit& visit) {
+  for (JointLoad<T>& load : *loads) {
+    for (T& component : load.W_F.force) visit(component, 1.0);
+    for (T& component : load.W_F.moment) visit(component, length);
   }
 }
 
 }  // namespace
 
+struct FrictionIteration::Map {
+  std::function<void(VectorXd* x)> read;
+  std::function<void(const VectorXd& x)> write;
+  const std::function<void()>& pass;
+
+  /// `part(component)` is a reference to what is iterated.
+  template <typename T, typename Part>
+  static Map Of(double length, std::vector<JointLoad<T>>* loads, const std::function<void()>& pass,
+                const Part& part) {
+    return {[=](VectorXd* x) {
+              x->resize(static_cast<Eigen::Index>(6 * loads->size()));
+              double* at = x->data();
+              VisitWrenches(length, loads, [&](T& c, double unit) { *at++ = part(c) / unit; });
+            },
+            [=](const VectorXd& x) {
+              const double* at = x.data();
+              VisitWrenches(length, loads, [&](T& c, double unit) { part(c) = *at++ * unit; });
+            },
+            pass};
+  }
+};
+
 bool FrictionIteration::Run(double length, std::vector<JointLoad<double>>* loads,
                             const std::function<void()>& pass) {
-  Read(*loads, length, &start_);
-  if (Iterate(length, loads, pass, &FrictionIteration::RelaxByAitken)) return true;
-  Write(start_, length, loads);
-  return Iterate(length, loads, pass, &FrictionIteration::MixByAnderson);
+  return Solve(Map::Of(length, loads, pass, [](double& c) -> double& { return c; }));
 }
 
-bool FrictionIteration::Iterate(double length, std::vector<JointLoad<double>>* loads,
-                                const std::function<void()>& pass,
-                                void (FrictionIteration::*step)(int)) {
+bool FrictionIteration::Run(double length, std::vector<JointLoad<Dual>>* loads,
+                            const std::function<void()>& pass) {
+  return Solve(Map::Of(length, loads, pass, [](Dual& c) -> double& { return c.value; })) &&
+         Solve(Map::Of(length, loads, pass, [](Dual& c) -> double& { return c.slope; }));
+}
+
+bool FrictionIteration::Solve(const Map& map) {
+  map.read(&start_);
+  if (Iterate(map, &FrictionIteration::RelaxByAitken)) return true;
+  map.write(start_);
+  return Iterate(map, &FrictionIteration::MixByAnderson);
+}
+
+bool FrictionIteration::Iterate(const Map& map, void (FrictionIteration::*step)(int)) {
   x_ = start_;
   for (int i = 0; i < kMaxIterations; ++i) {
-    pass();
-    Read(*loads, length, &G_);
+    map.pass();
+    map.read(&G_);
     residual_ = G_ - x_;
     if (!residual_.allFinite()) return false;
     if (Settled()) return true;
     (this->*step)(i);
-    Write(x_, length, loads);
+    map.write(x_);
   }
   return false;
 }

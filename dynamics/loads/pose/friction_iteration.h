@@ -3,6 +3,7 @@
 #include <functional>
 #include <vector>
 
+#include "vmech/base/dual.h"
 #include "vmech/dynamics/loads/pose/joint_load.h"
 
 namespace vmech {
@@ -17,11 +18,16 @@ class FrictionIteration {
   /// `pass` replaces the wrenches of `loads` by G of them. Returns false where they do not settle.
   [[nodiscard]] bool Run(double length, std::vector<JointLoad<double>>* loads,
                          const std::function<void()>& pass);
+  /// First the values, then their slopes, whose fixed point is that of dG/dx dx + dG/dp.
+  [[nodiscard]] bool Run(double length, std::vector<JointLoad<Dual>>* loads,
+                         const std::function<void()>& pass);
 
  private:
+  /// x := G(x) for a part of the loads: their numbers, the values of duals or their slopes.
+  struct Map;
+  bool Solve(const Map& map);
   /// Iterates with x += Step; false if it does not settle.
-  bool Iterate(double length, std::vector<JointLoad<double>>* loads,
-               const std::function<void()>& pass, void (FrictionIteration::*step)(int));
+  bool Iterate(const Map& map, void (FrictionIteration::*step)(int));
   bool Settled() const;
   void RelaxByAitken(int iteration);
   void MixByAnderson(int iteration);

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "vmech/base/dual.h"
 #include "vmech/base/linear_algebra/linear_algebra.h"
 #include "vmech/base/screw_algebra.h"
 #include "vmech/dynamics/loads/pose/hand_wrench.h"
@@ -14,16 +15,18 @@ namespace {
 
 /// Momentum of all links in the velocities v along each idle motion: N_i' M v. Uses V and F of the
 /// nodes as scratch.
-VectorXd IdleMomentum(const LoadModel& model, const VectorXd& v, LoadWorkspace<double>* ws) {
-  VectorXd momentum = VectorXd::Zero(model.tree.nv);
+template <typename T>
+VectorX<T> IdleMomentum(const LoadModel& model, const VectorX<T>& v, LoadWorkspace<T>* ws) {
+  VectorX<T> momentum = VectorX<T>::Zero(model.tree.nv);
   Momenta(model.tree, ws->inertias, v.data(), &ws->tree, momentum.data());
   return ws->idle_motions.transpose() * momentum;
 }
 
-MatrixXd IdleInertia(const LoadModel& model, LoadWorkspace<double>* ws) {
-  MatrixXd inertia(model.idle, model.idle);
+template <typename T>
+MatrixX<T> IdleInertia(const LoadModel& model, LoadWorkspace<T>* ws) {
+  MatrixX<T> inertia(model.idle, model.idle);
   for (Eigen::Index k = 0; k < model.idle; ++k) {
-    inertia.col(k) = IdleMomentum(model, ws->idle_motions.col(k), ws);
+    inertia.col(k) = IdleMomentum<T>(model, ws->idle_motions.col(k), ws);
   }
   return inertia;
 }
@@ -69,27 +72,34 @@ MatrixXd UnseenByHand(const LoadModel& model, const TreeWorkspace<double>& ws, c
   return N * FindLeftSingularVectors(seen.transpose()).vectors.rightCols(model.idle);
 }
 
-MatrixXd IdleAmong(const LoadModel& model, const TreeWorkspace<double>& ws, const MatrixXd& N) {
-  return model.hand ? UnseenByHand(model, ws, N) : MatrixXd(N.rightCols(model.idle));
+template <typename T>
+MatrixX<T> IdleAmong(const LoadModel& model, const TreeWorkspace<T>& ws, const MatrixX<T>& N) {
+  if constexpr (std::is_same_v<T, double>) {
+    if (model.hand) return UnseenByHand(model, ws, N);
+  }
+  return N.rightCols(model.idle);
 }
 
 }  // namespace
 
-void FindMotions(const LoadModel& model, LoadWorkspace<double>* ws) {
+template <typename T>
+void FindMotions(const LoadModel& model, LoadWorkspace<T>* ws) {
   FreeMotions(ws->tree, &ws->dependents, &ws->motions);
   if (model.idle > 0) ws->idle_motions = IdleAmong(model, ws->tree, ws->motions);
 }
 
-void RemoveIdleMomentum(const LoadModel& model, LoadWorkspace<double>* ws) {
+template <typename T>
+void RemoveIdleMomentum(const LoadModel& model, LoadWorkspace<T>* ws) {
   if (model.idle_is_held) return;
-  const VectorXd rate =
+  const VectorX<T> rate =
       SolveAboveFloor(IdleInertia(model, ws), IdleMomentum(model, ws->v, ws), model.no_inertia);
   ws->v -= ws->idle_motions * rate;
 }
 
-void SettleIdleFreedoms(const LoadModel& model, LoadWorkspace<double>* ws) {
+template <typename T>
+void SettleIdleFreedoms(const LoadModel& model, LoadWorkspace<T>* ws) {
   if (model.idle_is_held) return;
-  const auto open = [&]() -> VectorXd {
+  const auto open = [&]() -> VectorX<T> {
     return ws->idle_motions.transpose() * (ws->tau - ws->passive);
   };
   ws->vdot -= ws->idle_motions * SolveAboveFloor(IdleInertia(model, ws), open(), model.no_inertia);
@@ -98,7 +108,8 @@ void SettleIdleFreedoms(const LoadModel& model, LoadWorkspace<double>* ws) {
   GyroscopicWrenches(model.tree, ws->inertias, &ws->tree);
   ForwardAccelerations(model.tree, ws->vdot.data(), &ws->tree);
   NewtonEuler(model.tree, ws->inertias, ws->applied.data(), &ws->tree, ws->tau.data());
-  ws->unresisted = open().cwiseAbs().maxCoeff();
+  ws->unresisted = 0;
+  for (const T& force : open()) ws->unresisted = std::max(ws->unresisted, std::abs(Lane(force, 0)));
 }
 
 void IdlePositions::Remember(const TreeWorkspace<double>& ws) {
@@ -140,5 +151,15 @@ double ShiftOfCentres(const KinematicTree& tree, const VectorXd& v, TreeWorkspac
   }
   return shift;
 }
+
+// NOLINTBEGIN(bugprone-macro-parentheses): T is a type
+#define VMECH_INSTANTIATE(T)                                                \
+  template void FindMotions<T>(const LoadModel&, LoadWorkspace<T>*);        \
+  template void RemoveIdleMomentum<T>(const LoadModel&, LoadWorkspace<T>*); \
+  template void SettleIdleFreedoms<T>(const LoadModel&, LoadWorkspace<T>*);
+VMECH_INSTANTIATE(double)
+VMECH_INSTANTIATE(Dual)
+#undef VMECH_INSTANTIATE
+// NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace vmech

@@ -19,15 +19,18 @@ namespace vmech {
 /// The free motions at a pose, and which of them are idle: those of the idle freedoms, or, under a
 /// hand, those that it does not see. Needs a factored ws->dependents; writes ws->motions and
 /// ws->idle_motions.
-void FindMotions(const LoadModel& model, LoadWorkspace<double>* ws);
+template <typename T>
+void FindMotions(const LoadModel& model, LoadWorkspace<T>* ws);
 
 /// Adds to ws->v the idle motion that takes its momentum away. Needs X and ws->motions.
-void RemoveIdleMomentum(const LoadModel& model, LoadWorkspace<double>* ws);
+template <typename T>
+void RemoveIdleMomentum(const LoadModel& model, LoadWorkspace<T>* ws);
 
 /// Adds to ws->vdot the idle acceleration that leaves no force open along the idle freedoms; brings
 /// accelerations, F and tau up to date. Writes ws->unresisted, the force that is left where no
 /// inertia takes it.
-void SettleIdleFreedoms(const LoadModel& model, LoadWorkspace<double>* ws);
+template <typename T>
+void SettleIdleFreedoms(const LoadModel& model, LoadWorkspace<T>* ws);
 
 /// Where an idle freedom has got to: the discrete form of the above. Between one pose and the next,
 /// every link is displaced by d = [p_cm - p_cm'; log(R R'^T)], and

@@ -74,6 +74,7 @@ void JointAccelerations(const KinematicTree& tree, const TreeWorkspace<T>& ws, c
                                       std::vector<JointLoad<T>>*);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
+VMECH_INSTANTIATE(Dual4)
 VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)

@@ -5,6 +5,7 @@
 #include "vmech/dynamics/loads/pose/friction_iteration.h"
 #include "vmech/dynamics/loads/pose/joint_load.h"
 #include "vmech/dynamics/loads/pose/load_model.h"
+#include "vmech/dynamics/loads/pose/study_motion.h"
 #include "vmech/dynamics/rigid_body/newton_euler.h"
 #include "vmech/kinematics/loops/closure.h"
 
@@ -19,16 +20,18 @@ struct RestingContact {
 };
 
 /// Memory for one thread, for one model that must outlive it. T is double for one pose at a time,
-/// Lanes4 for four in a row, or Dual for one and its derivative.
+/// Lanes4 for four in a row, or Dual and Dual4 for these and their derivatives.
 template <typename T>
 struct LoadWorkspace {
-  using VectorX = Eigen::Matrix<T, Eigen::Dynamic, 1>;
-
   explicit LoadWorkspace(const LoadModel& model);
   /// With other numbers than the model's: a Dual that has slopes in some takes the derivative of
   /// every load by them along.
-  LoadWorkspace(const LoadModel& model, const TreeDesign<T>& design);
+  LoadWorkspace(const LoadModel& model, const Design<T>& design);
 
+  std::vector<typename Design<T>::JointNumbers> numbers;  ///< per joint
+  Vector3<T> gravity_W;
+  /// Of duals: how what the study prescribes goes with the parameter; null if it does not.
+  const PrescribedSlopes* slopes = nullptr;
   TreeWorkspace<T> tree;
   DependentSolver<T> dependents;
   ReactionSolver<T> reactions;
@@ -42,14 +45,15 @@ struct LoadWorkspace {
   /// Per joint: what motors, stops and friction that was found before exert along its freedoms,
   /// beside springs and dampers. Null: nothing.
   const Vector3<T>* exerted = nullptr;
-  VectorX q, v, vdot;
-  VectorX tau;       ///< needed along each freedom
-  VectorX passive;   ///< supplied by springs and friction
-  VectorX open;      ///< what is left for drives and multipliers
-  VectorX mu;        ///< multipliers of the cut joints
-  MatrixXd motions;  ///< [nv, independent]: free motions, where the hand or idle freedoms need them
-  MatrixXd idle_motions;  ///< [nv, idle]: those of them that are idle
-  MatrixXd creep;         ///< [nv, standing drives]: the motion as each of them begins to move
+  VectorX<T> q, v, vdot;
+  VectorX<T> tau;      ///< needed along each freedom
+  VectorX<T> passive;  ///< supplied by springs and friction
+  VectorX<T> open;     ///< what is left for drives and multipliers
+  VectorX<T> mu;       ///< multipliers of the cut joints
+  /// [nv, independent]: free motions, where the hand or idle freedoms need them
+  MatrixX<T> motions;
+  MatrixX<T> idle_motions;  ///< [nv, idle]: those of them
+  MatrixXd creep;           ///< [nv, standing drives]: the motion as each of them begins to move
   std::vector<Vector3d> creep_rates;  ///< [standing drives * joints]
   std::vector<RestingContact> resting;
   VectorXd holding;  ///< [standing drives] y of resting_friction.h
@@ -59,12 +63,18 @@ struct LoadWorkspace {
   // What comes out, beside `tree`.
   std::vector<JointLoad<T>> loads;  ///< per joint
   std::vector<T> drive_forces;
-  Wrench<T> hand;         ///< w_d at Go, world axes
+  Wrench<T> hand;  ///< w_d at Go, world axes
+  /// Of duals: how fast the loops open with the parameter as the pose stands still, and how fast
+  /// they do although it goes along, which is nothing where the parameter is free to change.
+  LoopOpening closing, opening;
   double unresisted = 0;  ///< largest force along an idle freedom without inertia [N], [N m]
   T power, power_gap, power_size, closure;  ///< power_gap: of the balance; power_size: its terms
   bool jammed = false;
   int locking_joint = -1;
   bool held_by_friction = false;
+
+ private:
+  LoadWorkspace(const LoadModel& model, const Design<T>& design, const TreeDesign<T>& placed);
 };
 
 }  // namespace vmech

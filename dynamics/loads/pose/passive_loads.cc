@@ -34,13 +34,15 @@ void PassiveForces(const LoadModel& model, LoadWorkspace<T>* ws) {
   for (size_t j = 0; j < ws->loads.size(); ++j) {
     const Joint& joint = model.tree.mechanism.joints[j];
     const JointLoad<T>& load = ws->loads[j];
+    const typename Design<T>::JointNumbers& numbers = ws->numbers[j];
     ws->along[j].setZero();
     if (HasDryFriction(joint)) {
-      const Vector3<T> limits = FrictionLimits(joint, load.W_F, load.position, ws->sliding[j]);
+      const Vector3<T> limits =
+          FrictionLimits<T>(joint.type, numbers, load.W_F, load.position, ws->sliding[j]);
       ws->along[j] = SlidingFriction(joint.type, limits, ws->sliding[j]);
     }
     for (int k = 0; k < static_cast<int>(joint.passive.size()); ++k) {
-      ws->along[j][k] += SpringForce(joint.passive[k], load.position[k], load.rate[k]);
+      ws->along[j][k] += SpringForce(numbers.passive[k], load.position[k], load.rate[k]);
     }
     if (ws->exerted != nullptr) ws->along[j] += ws->exerted[j];
   }
@@ -69,6 +71,7 @@ int LockingJoint(const LoadModel& model, const LoadWorkspace<double>& ws, bool s
   template void SpreadPassive<T>(const LoadModel&, LoadWorkspace<T>*);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
+VMECH_INSTANTIATE(Dual4)
 VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)

@@ -22,24 +22,48 @@ namespace vmech {
 namespace {
 
 template <typename T>
-constexpr bool kSinglePose = std::is_same_v<T, double>;
+constexpr bool kIsPlain = std::is_same_v<T, double>;  // one pose, without slopes
+template <typename T>
+constexpr bool kIsOnePose = kLanesOf<T> == 1;
 
-const MotionSample& DriveAt(const LoadModel& model, const Motion& motion, size_t pose, size_t k) {
-  return motion.drives[pose * model.drives.size() + k];
+/// A part of what drive k prescribes at the poses `pose`, ...; of duals with its slope.
+template <typename T>
+T Prescribed(const LoadModel& model, const Motion& motion, size_t pose, size_t k,
+             double MotionSample::*part, const LoadWorkspace<T>& ws) {
+  return FromLanes<T>([&](int lane) {
+    const size_t at = (pose + lane) * model.drives.size() + k;
+    const double value = motion.drives[at].*part;
+    if constexpr (kIsDual<T>) {
+      return Dual(value, ws.slopes == nullptr ? 0.0 : ws.slopes->drives[at].*part);
+    } else {
+      return value;
+    }
+  });
 }
 
 template <typename T>
-void GatherCoordinates(const Motion& motion, size_t pose, LoadWorkspace<T>* ws) {
+void GatherCoordinates(const LoadModel& model, const Motion& motion, size_t pose,
+                       LoadWorkspace<T>* ws) {
   for (Eigen::Index i = 0; i < ws->q.size(); ++i) {
     ws->q[i] = FromLanes<T>([&](int lane) { return motion.q(pose + lane)[i]; });
+  }
+  if constexpr (kIsDual<T>) {
+    for (size_t k = 0; k < model.drives.size(); ++k) {
+      const JointDrive& drive = model.drives[k];
+      ws->q[CoordinateIndex(model.tree, drive.joint, drive.freedom)].slope =
+          Prescribed(model, motion, pose, k, &MotionSample::position, *ws).slope;
+    }
   }
 }
 
 /// How the closed pose goes along with the numbers of the design: one step of Newton's, which at a
 /// closed pose moves slopes alone (implicit differentiation, C dq = e2).
-void CloseSlopes(const LoadModel& model, LoadWorkspace<Dual>* ws) {
+template <typename N>
+void CloseSlopes(const LoadModel& model, LoadWorkspace<DualOf<N>>* ws) {
+  ws->closing = LargestOpening(model.tree, ws->tree);
   ws->dependents.StepCoordinates(ws->tree, ws->q.data());
   EvaluatePose(model.tree, ws->q.data(), &ws->tree);
+  ws->opening = LargestOpening(model.tree, ws->tree);
   ws->dependents.Factor(ws->tree);
 }
 
@@ -48,10 +72,11 @@ template <typename T>
 void GatherDrives(const LoadModel& model, const Motion& motion, size_t pose, LoadWorkspace<T>* ws) {
   const CoordinatePartition& partition = model.partition;
   for (size_t k = 0; k < model.drives.size(); ++k) {
-    const auto sample = [&](int lane) { return DriveAt(model, motion, pose + lane, k); };
-    ws->v[partition.driven[k]] = FromLanes<T>([&](int lane) { return sample(lane).velocity; });
-    ws->vdot[partition.driven[k]] =
-        FromLanes<T>([&](int lane) { return sample(lane).acceleration; });
+    const auto part = [&](double MotionSample::*of) {
+      return Prescribed(model, motion, pose, k, of, *ws);
+    };
+    ws->v[partition.driven[k]] = part(&MotionSample::velocity);
+    ws->vdot[partition.driven[k]] = part(&MotionSample::acceleration);
   }
 }
 
@@ -65,7 +90,7 @@ void CompleteVelocities(const LoadModel& model, LoadWorkspace<T>* ws) {
 /// From the velocities of the freedoms to those of the links.
 template <typename T>
 void MoveLinks(const LoadModel& model, LoadWorkspace<T>* ws) {
-  if constexpr (kSinglePose<T>) {
+  if constexpr (kIsOnePose<T>) {
     if (model.idle > 0) RemoveIdleMomentum(model, ws);
   }
   ForwardVelocities(model.tree, ws->v.data(), &ws->tree);
@@ -74,7 +99,7 @@ void MoveLinks(const LoadModel& model, LoadWorkspace<T>* ws) {
 template <typename T>
 void CloseVelocities(const LoadModel& model, const Motion& motion, size_t pose,
                      LoadWorkspace<T>* ws) {
-  if constexpr (kSinglePose<T>) {
+  if constexpr (kIsPlain<T>) {
     if (model.hand) HandVelocities(model, motion.hand[pose], ws);
   }
   if (!model.hand) CompleteVelocities(model, ws);
@@ -93,7 +118,7 @@ void CloseAccelerations(const LoadModel& model, const Motion& motion, size_t pos
   for (int v : partition.idle) ws->vdot[v] = T(0);
   ws->dependents.CompleteAccelerations(ws->tree, ws->vdot.data());
   ForwardAccelerations(model.tree, ws->vdot.data(), &ws->tree);
-  if constexpr (kSinglePose<T>) {
+  if constexpr (kIsPlain<T>) {
     if (!model.hand) return;
     HandAccelerations(model, motion.hand[pose], ws);
     ForwardAccelerations(model.tree, ws->vdot.data(), &ws->tree);
@@ -130,7 +155,7 @@ void PositionJoints(const LoadModel& model, const Motion& motion, size_t pose,
       joint.position[k] = FromLanes<T>(
           [&](int lane) { return motion.cut_positions[(pose + lane) * loops + l][k]; });
     }
-    if constexpr (std::is_same_v<T, Dual>) {
+    if constexpr (kIsDual<T>) {
       const Vector3<T> here = CutJointCoordinates(model.tree.loops[l], ws->tree.loops[l]);
       for (int k = 0; k < 3; ++k) joint.position[k].slope = here[k].slope;
     }
@@ -165,11 +190,11 @@ template <typename T>
 void FindEquilibrium(const LoadModel& model, LoadWorkspace<T>* ws) {
   for (JointLoad<T>& load : ws->loads) load.W_F = Wrench<T>{};
   EquilibriumPass(model, ws);
-  if constexpr (kSinglePose<T>) {
+  if constexpr (kIsOnePose<T>) {
     if (!model.has_load_friction) return;
     const bool settled =
         ws->friction.Run(model.tree.length, &ws->loads, [&] { EquilibriumPass(model, ws); });
-    ws->locking_joint = LockingJoint(model, *ws, settled);
+    if constexpr (kIsPlain<T>) ws->locking_joint = LockingJoint(model, *ws, settled);
     ws->jammed = !settled || ws->locking_joint >= 0;
   }
 }
@@ -207,13 +232,17 @@ template <typename T>
 void EquilibriumPass(const LoadModel& model, LoadWorkspace<T>* ws) {
   if (model.has_passive) PassiveForces(model, ws);
   LoadTree(model, ws);
-  if constexpr (kSinglePose<T>) {
+  if constexpr (kIsPlain<T>) {
     if (!ws->resting.empty()) {
       HoldByFriction(model, ws);
       SpreadPassive(model, ws);
       LoadTree(model, ws);
     }
+  }
+  if constexpr (kIsOnePose<T>) {
     if (model.idle > 0) SettleIdleFreedoms(model, ws);
+  }
+  if constexpr (kIsPlain<T>) {
     if (model.hand && model.rule != ReactionRule::kPaperJoint) ApplyHandWrench(model, ws);
     if (model.rule == ReactionRule::kPaperJoint) SolvePaperJoint(model, ws);
   }
@@ -231,17 +260,19 @@ bool RunsInLanes(const LoadModel& model) {
 template <typename T>
 bool EvaluatePoseLoads(const LoadModel& model, const Motion& motion, size_t pose,
                        LoadWorkspace<T>* ws) {
-  if (!kSinglePose<T> && model.has_dry_friction && AnyStands(model, motion, pose, kLanesOf<T>)) {
+  if (!kIsPlain<T> && model.has_dry_friction && AnyStands(model, motion, pose, kLanesOf<T>)) {
     return false;
   }
-  GatherCoordinates(motion, pose, ws);
+  GatherCoordinates(model, motion, pose, ws);
   EvaluatePose(model.tree, ws->q.data(), &ws->tree);
   ws->dependents.Factor(ws->tree);
-  if constexpr (std::is_same_v<T, Dual>) CloseSlopes(model, ws);
+  if constexpr (kIsDual<T>) CloseSlopes(model, ws);
   if (!AllLanes(ws->dependents.smallest_pivot() > T(0))) return false;
   ws->closure = LargestLoopError(model.tree, ws->tree);
-  if constexpr (kSinglePose<T>) {
+  if constexpr (kIsOnePose<T>) {
     if (ws->motions.size() > 0) FindMotions(model, ws);
+  }
+  if constexpr (kIsPlain<T>) {
     if (model.has_dry_friction) FindCreep(model, motion, pose, ws);
   }
   GatherDrives(model, motion, pose, ws);
@@ -269,6 +300,7 @@ bool EvaluatePoseLoads(const LoadModel& model, const Motion& motion, size_t pose
   template bool EvaluatePoseLoads<T>(const LoadModel&, const Motion&, size_t, LoadWorkspace<T>*);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
+VMECH_INSTANTIATE(Dual4)
 VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)

@@ -26,7 +26,7 @@ struct Balance {
 /// the forces.
 template <typename T>
 void SubtractEnergyRates(const LoadModel& model, const LoadWorkspace<T>& ws, Balance<T>* balance) {
-  const Triple<T> gravity_W = TripleOf<T>(model.tree.mechanism.gravity_W.cast<T>());
+  const Triple<T> gravity_W = TripleOf<T>(ws.gravity_W);
   for (size_t i = 0; i < model.tree.nodes.size(); ++i) {
     if (model.tree.nodes[i].link < 0) continue;
     const typename TreeWorkspace<T>::Node& s = ws.tree.nodes[i + 1];
@@ -86,6 +86,7 @@ void EvaluatePower(const LoadModel& model, LoadWorkspace<T>* ws) {
 
 template void EvaluatePower<double>(const LoadModel&, LoadWorkspace<double>*);
 template void EvaluatePower<Dual>(const LoadModel&, LoadWorkspace<Dual>*);
+template void EvaluatePower<Dual4>(const LoadModel&, LoadWorkspace<Dual4>*);
 template void EvaluatePower<Lanes4>(const LoadModel&, LoadWorkspace<Lanes4>*);
 
 }  // namespace vmech

@@ -38,7 +38,7 @@ Vector3d LimitsOf(const LoadModel& model, const RestingContact& contact, const V
                   const LoadWorkspace<double>& ws) {
   const Joint& joint = model.tree.mechanism.joints[contact.joint];
   const JointLoad<double>& load = ws.loads[contact.joint];
-  return FrictionLimits<double>(joint, load.W_F, load.position, contact.creep * rate);
+  return FrictionLimits(joint, load.W_F, load.position, contact.creep * rate);
 }
 
 /// y of the formula above for the weights that the contacts have.
@@ -171,6 +171,7 @@ void HoldByFriction(const LoadModel& model, LoadWorkspace<double>* ws) {
 
 template void FindContacts<double>(const LoadModel&, const Motion&, LoadWorkspace<double>*);
 template void FindContacts<Dual>(const LoadModel&, const Motion&, LoadWorkspace<Dual>*);
+template void FindContacts<Dual4>(const LoadModel&, const Motion&, LoadWorkspace<Dual4>*);
 template void FindContacts<Lanes4>(const LoadModel&, const Motion&, LoadWorkspace<Lanes4>*);
 
 }  // namespace vmech

@@ -1,7 +1,7 @@
 #include "vmech/dynamics/loads/pose/store_pose_loads.h"
 
+#include "vmech/base/lanes4.h"
 #include "vmech/base/screw_algebra.h"
-#include "vmech/base/store_lanes.h"
 #include "vmech/dynamics/loads/pose/hand_wrench.h"
 
 namespace vmech {

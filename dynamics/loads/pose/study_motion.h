@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "vmech/base/dual.h"
+#include "vmech/dynamics/loads/load_study.h"
 #include "vmech/kinematics/motion/motion_law.h"
 
 namespace vmech {
@@ -22,6 +24,14 @@ struct Motion {
     const size_t nq = coordinates.size() / times.size();
     return {coordinates.data() + pose * nq, static_cast<Eigen::Index>(nq)};
   }
+};
+
+/// How what a study prescribes goes with a parameter: the slopes of its motion, and its external
+/// loads with theirs.
+struct PrescribedSlopes {
+  std::vector<double> times;         ///< [poses]
+  std::vector<MotionSample> drives;  ///< [poses * drives]
+  std::vector<LoadTableOf<Dual>> external;
 };
 
 }  // namespace vmech

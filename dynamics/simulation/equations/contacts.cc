@@ -171,8 +171,8 @@ std::vector<HeldContact> Contacts::HeldContacts(const ConstrainedMotion& motion,
     if (!friction.rests) continue;
     const auto [first, count] = friction.freedoms;
     const JointLoad<double>& load = motion.ws().loads[friction.joint];
-    const Vector3d limits = FrictionLimits<double>(tree_.mechanism.joints[friction.joint], load.W_F,
-                                                   load.position, Vector3d::Zero());
+    const Vector3d limits = FrictionLimits(tree_.mechanism.joints[friction.joint], load.W_F,
+                                           load.position, Vector3d::Zero());
     HeldContact contact{HeldContact::Kind::kFriction, row, count};
     contact.limits.head(count) = limits.segment(first, count);
     held.push_back(contact);

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "vmech/studies/design.h"
+
+namespace vmech {
+
+/// What the command line asks of a study, by name.
+/// @throws OptionError naming the option, the value and what would do; std::invalid_argument for
+/// names that the study has not.
+
+/// All that are not zero if there are no names.
+std::vector<StudyParameter> ParametersAsked(const StudyFile& file,
+                                            const std::vector<std::string>& names);
+/// All if there are no names.
+std::vector<Figure> FiguresAsked(const StudyFile& file, const StudyOutcome& outcome,
+                                 const std::vector<std::string>& names);
+/// "crank/pin.x=40..60".
+DesignVariable VariableAsked(const std::vector<StudyParameter>& known, const std::string& words);
+/// "pin.life>=10000".
+DesignConstraint ConstraintAsked(const std::vector<Figure>& known, const std::string& words);
+
+}  // namespace vmech

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <utility>
+
+#include "vmech/base/pose.h"
+
+namespace vmech {
+
+/// minimise f(x) subject to g(x) <= 0, lower <= x <= upper. Bounds are finite.
+class NonlinearProgram {
+ public:
+  NonlinearProgram(VectorXd lower, VectorXd upper, int constraints)
+      : lower_(std::move(lower)), upper_(std::move(upper)), constraints_(constraints) {}
+  virtual ~NonlinearProgram() = default;
+
+  const VectorXd& lower() const { return lower_; }
+  const VectorXd& upper() const { return upper_; }
+  int constraints() const { return constraints_; }
+
+  /// Writes f, df/dx [n], g [m] and dg/dx [m, n]. False where the program is not defined.
+  virtual bool Evaluate(const VectorXd& x, double* f, VectorXd* df, VectorXd* g, MatrixXd* dg) = 0;
+
+ private:
+  VectorXd lower_, upper_;
+  int constraints_;
+};
+
+enum class ProgramMethod {
+  kSlsqp,  ///< sequential quadratic programming [Kraft 1994]
+  kMma,    ///< the method of moving asymptotes [Svanberg 2002]
+};
+
+struct ProgramOptions {
+  ProgramMethod method = ProgramMethod::kSlsqp;
+  double tolerance = 1e-10;   ///< of f and x, relative
+  /// Largest g that counts as zero. Packages stop a little on either side of a constraint: they are
+  /// asked for half of this inside of it.
+  double feasibility = 1e-6;
+  int max_evaluations = 500;
+};
+
+}  // namespace vmech

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "vmech/solvers/programs/minimise.h"
+#include "vmech/studies/sensitivities.h"
+
+namespace vmech {
+
+/// A parameter that a design may choose, between bounds in its unit.
+struct DesignVariable {
+  StudyParameter parameter;
+  double lower = 0, upper = 0;
+};
+
+/// figure <= limit, or figure >= limit, in the figure's unit.
+struct DesignConstraint {
+  Figure figure;
+  bool at_least = false;
+  double limit = 0;
+};
+
+/// What a design is to be best at, and what it must keep.
+struct DesignTask {
+  Figure objective;
+  bool maximise = false;
+  std::vector<DesignVariable> variables;
+  std::vector<DesignConstraint> constraints;
+};
+
+struct DesignOptions {
+  int threads = 1;
+  int starts = 1;  ///< the design as it is, and others that are spread over the bounds
+  ProgramOptions program;
+  /// Called after every design that was evaluated; false stops the search with the best so far.
+  std::function<bool(int evaluations)> progress;
+};
+
+/// What came of one start.
+struct DesignRun {
+  std::vector<double> values;  ///< [variables] in their units
+  double objective = 0;        ///< the peak itself where a peak is asked for
+  bool feasible = false;
+  std::string message;
+};
+
+struct DesignResult {
+  StudyFile best;              ///< the study with the best design
+  std::vector<double> values;  ///< [variables]
+  bool feasible = false;       ///< it keeps what it must
+  /// The objective, then the constraints' figures: as it was and as it is.
+  std::vector<double> before, after;
+  /// By how much the objective would fall (rise, if maximised) for each unit by which a limit is
+  /// loosened; zero where it does not bind.
+  std::vector<double> gain_by_limit;
+  /// The same for the bounds of the variables: positive at an upper bound, negative at a lower one.
+  std::vector<double> gain_by_bound;
+  double optimality = 0;  ///< as ProgramResult::optimality
+  std::vector<DesignRun> runs;
+  int evaluations = 0;
+};
+
+/// Searches the design of a study within bounds by exact derivatives, on the assembly branch of the
+/// study as it is; bearings are those of `outcome`. A design that cannot be assembled or moved
+/// draws the search back.
+/// @throws std::invalid_argument for a variable or figure that has no derivatives, or whose bounds
+/// do not hold its value; std::runtime_error if NLopt is not there.
+DesignResult OptimiseDesign(const StudyFile& file, const StudyOutcome& outcome,
+                            const DesignTask& task, const DesignOptions& options);
+
+}  // namespace vmech

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "vmech/dynamics/sensitivity/load_derivatives.h"
+#include "vmech/studies/study.h"
+
+namespace vmech {
+
+enum class FigureKind {
+  kForce,        ///< of a joint: the size of its force [N]
+  kMoment,       ///< of a joint: the size of the moment that it holds, across its freedoms [N m]
+  kDrive,        ///< of a drive: the size of its force [N] or [N m]
+  kGroundForce,  ///< the size of the sum of all forces on the ground [N]
+  kLife,         ///< L_nh of the bearings that a joint has got, together [h]
+  kMass,         ///< of all links but the ground [kg]
+  kPathError,    ///< distance of a grasp from where a table wants it [m]
+};
+
+/// How a course over the poses becomes one number.
+enum class Reduction {
+  kPeak,        ///< the largest; its derivative is that of the pose that has it
+  kSmoothPeak,  ///< (sum of x^32)^(1/32): smooth, and never below the peak
+  kRms,         ///< root mean square over the poses
+};
+
+/// A number that a study comes to, by which designs are judged.
+struct Figure {
+  FigureKind kind = FigureKind::kForce;
+  int index = -1;  ///< of the joint, the drive, the entry of StudyOutcome::bearings, or the grasp
+  Reduction reduction = Reduction::kPeak;
+  std::string name;                 ///< "pin.force", "main.drive.rms", "wrist.life", "mass"
+  std::string unit;                 ///< "N"
+  std::vector<Vector3d> path = {};  ///< [poses] of kPathError: where the grasp should be [m]
+};
+
+/// Peaks of the force and moment of every joint that is loaded, of every drive and of the force on
+/// the ground, the lives of the bearings that were chosen, and the mass.
+std::vector<Figure> FiguresOf(const StudyFile& file, const StudyOutcome& outcome);
+
+/// The figure of this name, such as "pin.force.rms", for a study whose figures are `known`.
+/// @throws std::invalid_argument naming those that there are.
+Figure FindFigure(const std::vector<Figure>& known, const std::string& name);
+
+/// Which components that statics does not determine a figure depends on, in words ("fz, mx"); empty
+/// if it is certain.
+std::string NotDeterminedIn(const Figure& figure, const StudyFile& file,
+                            const StudyOutcome& outcome);
+
+/// The figure and its derivative by the parameter of `change`, per unit of it. `loads` are those
+/// that belong to it. Bearings are those that `outcome` chose.
+Dual ValueOf(const Figure& figure, const StudyFile& file, const StudyOutcome& outcome,
+             const StudyChange& change, const LoadDerivatives& loads);
+
+/// The pose at which a peak is reached; -1 for what is no peak.
+int PeakPose(const Figure& figure, const StudyFile& file, const LoadDerivatives& loads);
+
+}  // namespace vmech

@@ -1,0 +1,99 @@
+#include "vmech/studies/study_parameters.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+namespace vmech {
+namespace {
+
+constexpr const char* kAxes = "xyz";
+
+/// The number of a mechanism that a parameter is.
+using Number = std::function<double&(Mechanism*)>;
+
+class Dimensions {
+ public:
+  Dimensions(const StudyFile& file, bool zeros) : mechanism_(file.study.mechanism), zeros_(zeros) {}
+
+  std::vector<StudyParameter> Run() {
+    for (size_t l = 0; l < mechanism_.links.size(); ++l) {
+      if (static_cast<int>(l) != mechanism_.ground) AddBody(l);
+    }
+    std::set<std::pair<int, int>> added;
+    for (const Joint& joint : mechanism_.joints) {
+      for (const AnchorId& id : {joint.first, joint.second}) {
+        if (added.insert({id.link, id.anchor}).second) AddAnchor(id);
+      }
+    }
+    return std::move(parameters_);
+  }
+
+ private:
+  void AddBody(size_t l) {
+    const Link& link = mechanism_.links[l];
+    const MassProperties& body = link.mass_properties;
+    if (body.mass == 0) return;
+    Add(link.name + ".mass", "kg", 1, body.mass, body.mass,
+        [l](Mechanism* m) -> double& { return m->links[l].mass_properties.mass; });
+    for (int k = 0; k < 3; ++k) {
+      AddLength(fmt::format("{}.center_of_gravity.{}", link.name, kAxes[k]), body.p_LoLcm[k],
+                [l, k](Mechanism* m) -> double& { return m->links[l].mass_properties.p_LoLcm[k]; });
+    }
+  }
+
+  void AddAnchor(const AnchorId& id) {
+    const Anchor& anchor = mechanism_.anchor(id);
+    const std::string name = fmt::format("{}/{}", mechanism_.links[id.link].name, anchor.name);
+    for (int k = 0; k < 3; ++k) {
+      AddLength(fmt::format("{}.{}", name, kAxes[k]), anchor.X_LA.p[k],
+                [id, k](Mechanism* m) -> double& {
+                  return m->links[id.link].anchors[id.anchor].X_LA.p[k];
+                });
+    }
+  }
+
+  void AddLength(const std::string& name, double value, const Number& number) {
+    constexpr double kZero = 1e-12;  // of a length: what is left of a number that was rotated
+    constexpr double kLeast = 0.01;  // of it: what a change of a number near zero is measured by
+    const double length = CharacteristicLength(mechanism_);
+    if (std::abs(value) <= kZero * length && !zeros_) return;
+    Add(name, mechanism_.units.length, mechanism_.units.metres, value,
+        std::max(std::abs(value), kLeast * length), number);
+  }
+
+  void Add(const std::string& name, const std::string& unit, double factor, double value,
+           double scale, const Number& number) {
+    const auto put = [number, factor](double figure, StudyFile* file) {
+      number(&file->study.mechanism) = figure * factor;
+    };
+    parameters_.push_back({name, unit, value / factor, scale / factor, put});
+  }
+
+  const Mechanism& mechanism_;
+  bool zeros_;
+  std::vector<StudyParameter> parameters_;
+};
+
+}  // namespace
+
+std::vector<StudyParameter> DimensionsOf(const StudyFile& file, bool zeros) {
+  return Dimensions(file, zeros).Run();
+}
+
+StudyParameter FindParameter(const std::vector<StudyParameter>& known, const std::string& name) {
+  std::vector<std::string> names;
+  for (const StudyParameter& parameter : known) {
+    if (parameter.name == name) return parameter;
+    names.push_back(parameter.name);
+  }
+  throw std::invalid_argument(
+      fmt::format("there is no parameter '{}'; there are {}", name, fmt::join(names, ", ")));
+}
+
+}  // namespace vmech
