@@ -74,6 +74,8 @@ void RegisterErrors(py::module_* module) {
       const py::object value = py::handle(file_errors.ptr())(error.what());
       value.attr("errors") = errors;
       PyErr_SetObject(file_errors.ptr(), value.ptr());
+    } catch (const py::builtin_exception&) {
+      throw;  // pybind11's own, for it to translate
     } catch (const std::runtime_error& error) {
       PyErr_SetString(no_solution.ptr(), error.what());
     }
@@ -269,7 +271,7 @@ std::vector<std::string> JointTypes(const Mechanism& mechanism) {
 
 void BindMechanism(py::module_* module) {
   py::class_<Mechanism, std::shared_ptr<Mechanism>>(*module, "Mechanism")
-      .def_static("read", &ReadMechanism)
+      .def_static("read", [](const std::filesystem::path& path) { return ReadMechanism(path); })
       .def_static("parse", [](const std::string& text,
                               const std::string& name) { return ParseMechanism(text, name); })
       .def("write", [](const Mechanism& m) { return WriteMechanism(m); })
@@ -300,7 +302,7 @@ void BindMechanism(py::module_* module) {
 
 void BindStudy(py::module_* module) {
   py::class_<StudyFile, std::shared_ptr<StudyFile>>(*module, "Study")
-      .def_static("read", &ReadStudy)
+      .def_static("read", [](const std::filesystem::path& path) { return ReadStudy(path); })
       .def_static("of", &StudyOf)
       .def("run", &Run)
       .def_readonly("name", &StudyFile::name)

@@ -26,7 +26,7 @@ import sys
 from sources import ROOT, relative
 
 MODULES = ("base", "mechanisms", "solvers", "kinematics", "dynamics", "comparison", "hw_interface",
-           "studies", "apps", "bindings")
+           "studies", "apps")
 BATCH = 20  # sources; clang-tidy takes about 1 GB for them
 INCLUDE = re.compile(r'^#include "vmech/([^"]+)"', re.MULTILINE)
 # What clang refuses: options of g++, and headers that g++ has precompiled.
