@@ -35,5 +35,5 @@ with tempfile.TemporaryDirectory() as name:
         examples / "four-bar-study.yaml")
     # The solver packages that are loaded late came along.
     ceres = "import vmech, sys; m = vmech.Mechanism.read(sys.argv[1]); " \
-            "print(m.ik([0.5, 0.6, 0], grasp='midpoint', solver='ceres-exact').hand_errors)"
+            "print(m.ik([0.5, 0.6, 0], grasp='midpoint', solver='ceres_exact').hand_errors)"
     run(python, "-B", "-c", ceres, examples / "four-bar.yaml")
