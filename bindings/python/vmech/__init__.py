@@ -518,9 +518,9 @@ def hold(mechanism: Mechanism, hand: Hand, felt: Optional[Callable[[Array], Any]
 
     `hand(t)` gives the handle's position (3,) [m], or (position, rotation (3, 3)), in axes along
     the world's; wherever it is at first, there it takes hold of the grasp. `felt(wrench)` gets what
-    the device is to exert (6,). Both are called in every period: soft real time, as Python lets it
-    (`skipped`); with `real_time` False time passes as fast as they compute. What they raise ends
-    the session and is raised here.
+    the device is to exert (6,), zero at the end. Both are called in every period: soft real time,
+    as Python lets it (`skipped`); with `real_time` False time passes as fast as they compute. What
+    they raise ends the session and is raised here.
 
     The gains follow from what the handle is: `mass` [kg], `inertia` [kg m^2], `damping` [N s/m],
     `resolution` [m], `peak_force` [N], and the same about its axes. `coupling` is "virtual" or
