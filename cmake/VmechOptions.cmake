@@ -1,6 +1,8 @@
 # What a build may choose, and the compile settings that every target shares.
 
 option(VMECH_BUILD_TESTS "build the tests and benchmarks" ${PROJECT_IS_TOP_LEVEL})
+option(VMECH_BUILD_C "build libvmech_c, the library for C" ${PROJECT_IS_TOP_LEVEL})
+option(VMECH_BUILD_PYTHON "build the Python module" ${PROJECT_IS_TOP_LEVEL})
 option(VMECH_BUILD_NOTEBOOKS "build the chapters of notebooks_cpp" ${PROJECT_IS_TOP_LEVEL})
 option(VMECH_LINT "run clang-format, clang-tidy and the text rules as tests"
        ${PROJECT_IS_TOP_LEVEL})

@@ -16,7 +16,8 @@ set_tests_properties(consumer.install PROPERTIES FIXTURES_SETUP vmech_installati
 get_target_property(packages vmech_solver_packages MANUALLY_ADDED_DEPENDENCIES)
 list(JOIN packages " " packages)
 
-# vmech_add_consumer(<name> <project> <flags> <command>): builds a project and runs a command.
+# vmech_add_consumer(<name> <project> <flags> <command> [<option>...]): builds a project and runs a
+# command.
 function(vmech_add_consumer name project flags command)
   add_test(NAME consumer.${name}
     COMMAND ${CMAKE_CTEST_COMMAND}
@@ -25,7 +26,7 @@ function(vmech_add_consumer name project flags command)
       --build-options -DCMAKE_PREFIX_PATH=${consumer}/prefix
                       -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER}
                       "-DCMAKE_CXX_FLAGS=${flags} ${consumer_flags}"
-                      -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF
+                      -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF ${ARGN}
       --test-command sh -c "${command}")
   set_tests_properties(consumer.${name} PROPERTIES FIXTURES_REQUIRED vmech_installation)
 endfunction()
@@ -69,3 +70,17 @@ add_test(NAME consumer.refuses_other_settings_of_eigen
 set_tests_properties(consumer.refuses_other_settings_of_eigen PROPERTIES
   FIXTURES_REQUIRED vmech_installation
   PASS_REGULAR_EXPRESSION "must be what vmech was compiled with")
+
+# The program of docs/c.md, found by CMake and by pkg-config.
+if(VMECH_BUILD_C AND NOT VMECH_SANITIZE)
+  set(program ${PROJECT_SOURCE_DIR}/tests/bindings/c/four_bar_loads.c)
+  set(study ${PROJECT_SOURCE_DIR}/mechanisms/examples/four-bar-study.yaml)
+  set(libraries ${consumer}/prefix/${CMAKE_INSTALL_LIBDIR})
+  vmech_add_consumer(c ${CMAKE_CURRENT_LIST_DIR}/c "" "./loads ${study}" -DPROGRAM=${program})
+  add_test(NAME consumer.c_by_pkg_config
+    COMMAND sh -c "${CMAKE_C_COMPILER} -std=c99 ${program} -o ${consumer}/loads \
+$(pkg-config --cflags --libs vmech_c) && ${consumer}/loads ${study}")
+  set_tests_properties(consumer.c_by_pkg_config PROPERTIES
+    FIXTURES_REQUIRED vmech_installation
+    ENVIRONMENT "PKG_CONFIG_PATH=${libraries}/pkgconfig;LD_LIBRARY_PATH=${libraries}")
+endif()

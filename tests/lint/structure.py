@@ -15,7 +15,7 @@ from functions import functions_of
 from sources import ROOT, cpp_files, relative
 
 MODULES = ("base", "mechanisms", "solvers", "kinematics", "dynamics", "comparison", "hw_interface",
-           "studies", "apps")
+           "studies", "apps", "bindings")
 MAX_COMPONENTS = 15
 MEDIAN_LINES, LONG_LINES, LONG_SHARE = 7, 40, 0.01
 INCLUDE = re.compile(r'^#include "vmech/([^"]+)\.h"', re.MULTILINE)
