@@ -62,13 +62,18 @@ void Recorder::Record(double time, double* y) {
   equations_.forces().Remember(equations_.motion());
   equations_.Evaluate(time, y, v);
   equations_.forces().FindJoints(&equations_.motion());
+  const VectorXd& rates = equations_.motion().ws().v;
+  std::copy(rates.begin(), rates.end(), v);
+  result_.statistics.largest_closure = std::max(result_.statistics.largest_closure, closure);
+  Enter(time, y);
+}
+
+void Recorder::Enter(double time, const double* y) {
   const LoadWorkspace<double>& ws = equations_.motion().ws();
-  std::copy(ws.v.begin(), ws.v.end(), v);
   result_.times.push_back(time);
   Append(ws.q, &result_.q);
   Append(ws.v, &result_.v);
   Append(ws.vdot, &result_.vdot);
-  result_.statistics.largest_closure = std::max(result_.statistics.largest_closure, closure);
   if (prepared_.simulation.hand) result_.hand.push_back(equations_.forces().hand());
   for (size_t i = 0; i < prepared_.simulation.motors.size(); ++i) {
     result_.motor_forces.push_back(equations_.forces().MotorForce(i));
@@ -96,7 +101,7 @@ void Recorder::RecordLoads(double time) {
   const Motion motion = equations_.forces().PoseOf(time, equations_.motion());
   arrays_->times[pose] = time;
   for (size_t k = 0; k < arrays_->drive_count; ++k) {
-    arrays_->drives[pose * arrays_->drive_count + k] = prepared_.simulation.drives[k].law.At(time);
+    arrays_->drives[pose * arrays_->drive_count + k] = equations_.DriveAt(k, time);
   }
   const std::vector<Vector3d> beside = equations_.BesideSprings();
   ws.exerted = beside.data();

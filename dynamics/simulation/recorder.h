@@ -18,6 +18,9 @@ class Recorder {
 
   /// y [size of the equations] at a time, which is moved onto the loops.
   void Record(double time, double* y);
+  /// The same where the equations hold all that there is at the time: pose, rates, accelerations,
+  /// joints, forces. Of y the energies count.
+  void Enter(double time, const double* y);
   /// Cuts the arrays to what was recorded, and judges the wrenches.
   void Finish();
 

@@ -157,7 +157,7 @@ class Run {
       ReturnToLoops();
       if (!NearSingularPose(equations_, time_ - from)) {
         ChangeMethodIfStiff();
-      } else if (!index_two_) {
+      } else {
         Leap();
       }
     }
@@ -266,13 +266,7 @@ class Run {
   void FindContacts() {
     if (equations_.contacts().empty()) return;
     PlaceAt(time_, y_.data());
-    equations_.contacts().HoldAllAtRest(equations_.motion());
-    do {
-      equations_.HoldContacts();
-      PlaceAt(time_, y_.data());
-      equations_.Evaluate(time_, y_.data(), y_.data() + equations_.tree().nq);
-    } while (equations_.contacts().Release(equations_.motion(), equations_.drives()));
-    TakeRates();
+    equations_.FindContacts(time_, y_.data(), y_.data() + equations_.tree().nq);
   }
 
   void TakeRates() {
@@ -325,14 +319,17 @@ class Run {
 
   /// After a step that has failed: over a singular pose, or with equations chosen anew.
   bool TryAgain() {
-    if (failed_at_ == time_) return false;
+    if (Leap()) return true;
+    if (failed_at_ == time_ || !index_two_) return false;
     failed_at_ = time_;
-    if (index_two_) return BringBack(), true;
-    return Leap();
+    BringBack();
+    return true;
   }
 
   bool Leap() {
-    if (!LeapOverSingularPose(end(), &equations_, &time_, &y_)) return false;
+    VectorXd state = y_.head(equations_.size());
+    if (!LeapOverSingularPose(end(), &equations_, &time_, &state)) return false;
+    y_.head(equations_.size()) = state;
     BringBack();
     return true;
   }

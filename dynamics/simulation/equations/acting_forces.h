@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "vmech/dynamics/in_hand/virtual_coupling.h"
@@ -24,6 +25,10 @@ class ActingForces {
 
   /// The same from another one's.
   void ContinueFrom(const ActingForces& other) { cut_positions_ = other.cut_positions_; }
+  /// The same from given coordinates of the cut joints [loops].
+  void ContinueFrom(std::vector<Vector3d> cut_positions) {
+    cut_positions_ = std::move(cut_positions);
+  }
 
   /// Positions and rates of all joints into ws().loads of `motion`, which has pose and velocities.
   void FindJoints(ConstrainedMotion* motion);

@@ -254,6 +254,10 @@ void Contacts::ReleaseFriction() {
   for (Friction& friction : frictions_) friction.rests = false;
 }
 
+void Contacts::OpenLimits() {
+  for (Stop& stop : stops_) stop.closed = 0;
+}
+
 void Contacts::Compare(const Contacts& after, double time, const ConstrainedMotion& motion,
                        std::vector<SimulationEvent>* events) const {
   using Kind = SimulationEvent::Kind;

@@ -54,6 +54,7 @@ class Contacts {
   /// positions and rates.
   void HoldAllAtRest(const ConstrainedMotion& motion);
   void ReleaseFriction();
+  void OpenLimits();
   /// After Accelerate with Held as the last rows: what cannot be held slips or opens. True if any.
   bool Release(const ConstrainedMotion& motion, int before);
 

@@ -64,6 +64,20 @@ void EquationsOfMotion::HoldContacts() {
   held_slopes_ = held_rates_;
 }
 
+bool EquationsOfMotion::IsSingular() const {
+  return regular_->motion.smallest_pivot() < kSingular;
+}
+
+void EquationsOfMotion::FindContacts(double time, const double* q, double* v) {
+  contacts_.HoldAllAtRest(now_->motion);
+  do {
+    HoldContacts();
+    Place(time, q, v);
+    Evaluate(time, q, v);
+  } while (contacts_.Release(now_->motion, drives()));
+  std::copy(now_->motion.ws().v.begin(), now_->motion.ws().v.end(), v);
+}
+
 std::unique_ptr<EquationsOfMotion::Choice> EquationsOfMotion::MakeChoice(const VectorXd& q,
                                                                          double tolerance) const {
   auto choice =
@@ -95,9 +109,14 @@ bool EquationsOfMotion::ChoosesBadly() const {
   return regular_->motion.smallest_pivot() < kWorn * regular_->best_pivot;
 }
 
+MotionSample EquationsOfMotion::DriveAt(size_t drive, double time) const {
+  if (!given_drives_.empty()) return given_drives_[drive];
+  return prepared_.simulation.drives[drive].law.At(time);
+}
+
 void EquationsOfMotion::FindDriveMotion(double time) {
   for (size_t k = 0; k < driven_.size(); ++k) {
-    const MotionSample sample = prepared_.simulation.drives[k].law.At(time);
+    const MotionSample sample = DriveAt(k, time);
     held_rates_[k] = sample.velocity;
     held_slopes_[k] = sample.acceleration;
   }
@@ -230,7 +249,7 @@ double EquationsOfMotion::Close(double time, double* q) {
   constexpr double kClosed = 1e-14;
   for (size_t k = 0; k < driven_.size(); ++k) {
     const JointDrive& drive = prepared_.simulation.drives[k];
-    q[CoordinateIndex(tree_, drive.joint, drive.freedom)] = drive.law.At(time).position;
+    q[CoordinateIndex(tree_, drive.joint, drive.freedom)] = DriveAt(k, time).position;
   }
   SetPose(q);
   return now_->motion.Close(std::max(kClosed, 0.1 * prepared_.closure_tolerance), q);

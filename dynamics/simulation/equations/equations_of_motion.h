@@ -50,6 +50,8 @@ class EquationsOfMotion {
   bool ChooseFreedoms(const VectorXd& q);
   /// Has the choice become bad?
   bool ChoosesBadly() const;
+  /// Do loops lose rank at the pose?
+  bool IsSingular() const;
 
   const KinematicTree& tree() const { return tree_; }
   ConstrainedMotion& motion() { return now_->motion; }
@@ -58,7 +60,18 @@ class EquationsOfMotion {
   const Contacts& contacts() const { return contacts_; }
   /// Holds what the contacts hold from now on.
   void HoldContacts();
+  /// Holds what rests at a state and what stands at limits, but for what slips or opens at once.
+  /// Takes rates v [nv] as that allows. Needs joint positions and rates, as of Place.
+  void FindContacts(double time, const double* q, double* v);
   int drives() const { return static_cast<int>(driven_.size()); }
+  /// What a drive prescribes.
+  MotionSample DriveAt(size_t drive, double time) const;
+  /// The drives move like this from now on, and not by their laws [drives].
+  void MoveDrives(std::vector<MotionSample> samples) { given_drives_ = std::move(samples); }
+  /// Angles of cut joints continue from these [loops].
+  void ContinueCutJoints(std::vector<Vector3d> positions) {
+    regular_->forces.ContinueFrom(std::move(positions));
+  }
   /// [joints] along the joints' freedoms beside springs and dampers: motors, friction, limits.
   std::vector<Vector3d> BesideSprings() const;
   const LoadModel& model() const { return now_->model; }
@@ -87,6 +100,7 @@ class EquationsOfMotion {
   const PreparedSimulation& prepared_;
   const KinematicTree& tree_;
   std::vector<int> driven_;
+  std::vector<MotionSample> given_drives_;  ///< empty: their laws hold
   Contacts contacts_;
   FrictionIteration friction_;
   std::vector<Vector3d> held_along_;  ///< [joints] while friction under load settles

@@ -68,6 +68,7 @@ void IndexTwo::Start(double time, VectorXd* y, VectorXd* slopes) {
   *slopes = VectorXd::Zero(size());
   y->tail(2 * constraints()).setZero();
   equations_.Slopes(time, y->data(), slopes->data());
+  from_singular_ = equations_.IsSingular();
   ChooseRows();
   VectorXd F(size());
   Residual(time, y->data(), slopes->data(), F.data());
@@ -82,6 +83,7 @@ bool IndexTwo::Residual(double time, const double* y, const double* slopes, doub
   using Vector = Eigen::Map<const VectorXd>;
   const Vector v(y + nq, nv), l(y + equations_.size(), n), m(y + equations_.size() + n, n);
   equations_.TakeState(time, y, y + nq, slopes + nq);
+  if (equations_.IsSingular() && !from_singular_) return false;
   LoadWorkspace<double>& ws = equations_.motion().ws();
   const MatrixXd G = Rows();
   Eigen::Map<VectorXd> out(F, size());

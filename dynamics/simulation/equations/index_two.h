@@ -21,7 +21,8 @@ class IndexTwo {
   int size() const { return equations_.size() + 2 * constraints(); }
   /// y is that of EquationsOfMotion with room for the rest; chooses the basis there.
   void Start(double time, VectorXd* y, VectorXd* slopes);
-  /// Writes F [size].
+  /// Writes F [size]. False if it is not finite, or where loops lose rank, over which steps lead:
+  /// multipliers are not determined there.
   bool Residual(double time, const double* y, const double* slopes, double* F);
   /// Has the basis become bad?
   bool ChoosesBadly(double time, const double* y);
@@ -40,6 +41,7 @@ class IndexTwo {
   VectorXd row_scale_;
   MatrixXd basis_;  ///< [rows, rank] orthonormal
   double best_pivot_ = 0;
+  bool from_singular_ = false;  ///< it began at such a pose
 };
 
 }  // namespace vmech
