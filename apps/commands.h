@@ -23,9 +23,10 @@ struct CheckArguments {
   std::vector<std::filesystem::path> mechanisms;  ///< one or several
   std::optional<double> tolerance;                ///< instead of the mechanism's own
   bool json = false;
-  bool dh = false;             ///< the Denavit-Hartenberg rows as well
-  bool strict = false;         ///< warnings are errors
-  std::filesystem::path draw;  ///< where a picture of the only mechanism goes; empty: nowhere
+  bool dh = false;               ///< the Denavit-Hartenberg rows as well
+  bool strict = false;           ///< warnings are errors
+  std::filesystem::path draw;    ///< where a picture of the only mechanism goes; empty: nowhere
+  std::vector<std::string> set;  ///< parameters, "crank=60"
 };
 /// Checks every file; returns the greatest of their exit codes.
 int RunCheck(const CheckArguments& arguments);
@@ -35,8 +36,9 @@ struct LoadsArguments {
   std::filesystem::path out;        ///< empty: "<study>-loads" in the current folder
   std::optional<double> tolerance;  ///< instead of the mechanism's own
   bool quiet = false;
-  int threads = 0;      ///< 0: all processors
-  bool strict = false;  ///< warnings are errors: nothing is written
+  int threads = 0;               ///< 0: all processors
+  bool strict = false;           ///< warnings are errors: nothing is written
+  std::vector<std::string> set;  ///< parameters, "crank=60"
 };
 int RunLoads(const LoadsArguments& arguments);
 /// Of a study with a simulation; the default folder is "<study>-simulate".
@@ -71,7 +73,8 @@ struct CompareArguments {
   std::vector<std::string> solvers;  ///< by name; empty: all
   std::filesystem::path out;         ///< empty: "<suite>-compare" in the current folder
   bool quiet = false;
-  int jobs = 0;  ///< processes; 0: as many as there are processors
+  int jobs = 0;                  ///< processes; 0: as many as there are processors
+  std::vector<std::string> set;  ///< parameters, "crank=60"
 };
 int RunCompare(const CompareArguments& arguments);
 
@@ -84,8 +87,9 @@ int RunIk(const IkArguments& arguments);
 struct ExportArguments {
   std::filesystem::path mechanism, out;
   std::optional<double> tolerance;  ///< instead of the mechanism's own
-  bool si = false;         ///< .yaml: metres and radians instead of millimetres and degrees
-  bool dh_frames = false;  ///< links drawn in their Denavit-Hartenberg frames
+  bool si = false;               ///< .yaml: metres and radians instead of millimetres and degrees
+  bool dh_frames = false;        ///< links drawn in their Denavit-Hartenberg frames
+  std::vector<std::string> set;  ///< parameters, "crank=60"
 };
 int RunExport(const ExportArguments& arguments);
 
@@ -115,6 +119,7 @@ struct HapticArguments {
   std::optional<double> tolerance;     ///< instead of the mechanism's own
   bool post_mortem = true;             ///< write the last ticks after a fault
   bool quiet = false;
+  std::vector<std::string> set;  ///< parameters, "crank=60"
 };
 int RunHaptic(const HapticArguments& arguments);
 
@@ -135,6 +140,7 @@ struct ViewArguments {
   std::filesystem::path meshes;     ///< of the links; empty: "<mechanism>-meshes" beside the file
   std::optional<double> tolerance;  ///< instead of the mechanism's own
   int port = 0;                     ///< 0: any free one
+  std::vector<std::string> set;     ///< parameters, "crank=60"
 };
 int RunView(const ViewArguments& arguments);
 

@@ -17,6 +17,7 @@
 #include "vmech/apps/console/option_error.h"
 #include "vmech/apps/console/progress_bar.h"
 #include "vmech/apps/files/file_kind.h"
+#include "vmech/apps/files/parameter_options.h"
 #include "vmech/apps/files/result_folder.h"
 #include "vmech/apps/mpi/mpi_session.h"
 #include "vmech/comparison/statistics.h"
@@ -76,7 +77,10 @@ void PrintSummary(const Suite& suite, const std::vector<Result>& results,
 }
 
 int Compare(const CompareArguments& arguments, MpiSession* mpi) {
-  const Suite suite = ReadAs({"compare", {FileKind::kSuite}}, arguments.suite, ReadSuite);
+  const Suite suite = ReadWithSettings(arguments.set, [&](auto settings) {
+    return ReadAs({"compare", {FileKind::kSuite}}, arguments.suite,
+                  [&](const auto& path) { return ReadSuite(path, settings); });
+  });
   const std::vector<SolverEntry> solvers = SolversNamed(arguments.solvers);
   CheckMechanisms(suite);
   const Work work = ComparisonWork(suite);

@@ -82,6 +82,15 @@ void AddTolerance(CLI::App* command, std::optional<double>* tolerance) {
       ->type_name("NUMBER");
 }
 
+void AddSet(CLI::App* command, std::vector<std::string>* set) {
+  command
+      ->add_option("--set", *set,
+                   "value of a parameter of the file, a number or an expression; may be given "
+                   "several times")
+      ->allow_extra_args(false)
+      ->type_name("NAME=VALUE");
+}
+
 /// The solvers in braces, as CLI11 shows choices.
 std::string Solvers() {
   std::string names;
@@ -120,6 +129,7 @@ void AddIk(CLI::App* app, vmech::IkArguments* ik) {
   command->add_flag("--paper-rotation", question.paper_rotation,
                     "rotation error of the paper (sine) instead of the angle");
   command->add_flag("--no-limits", question.no_limits, "ignore the limits of joints");
+  AddSet(command, &question.set);
   AddTolerance(command, &question.tolerance);
   command->add_flag("--json", ik->json, "print JSON instead of text");
 }
@@ -137,6 +147,7 @@ void AddExport(CLI::App* app, vmech::ExportArguments* arguments) {
       ->required()
       ->type_name("FILE");
   command->add_option("--out", arguments->out, "file to write")->required()->type_name("FILE");
+  AddSet(command, &arguments->set);
   AddTolerance(command, &arguments->tolerance);
   command->add_flag("--dh-frames", arguments->dh_frames,
                     "draw every link in its Denavit-Hartenberg frame");
@@ -228,6 +239,7 @@ void AddHaptic(CLI::App* app, vmech::HapticArguments* haptic) {
                    "write every tick to this file while it runs: .mcap, else CSV")
       ->type_name("FILE");
   command->add_flag("--force", haptic->force, "write over an old recording");
+  AddSet(command, &haptic->set);
   AddTolerance(command, &haptic->tolerance);
   command->add_flag("--free", haptic->free_running, "as fast as it computes, in simulated time");
   command->add_flag("-q,--quiet", haptic->quiet, "print nothing but errors");
@@ -253,6 +265,7 @@ void AddView(CLI::App* app, vmech::ViewArguments* view) {
   command->add_option("--port", view->port, "of the page; 0 for any free one")
       ->check(CLI::Range(0, 65535, "0..65535"))
       ->capture_default_str();
+  AddSet(command, &view->set);
   AddTolerance(command, &view->tolerance);
 }
 
@@ -291,6 +304,7 @@ void AddCheck(CLI::App* app, vmech::CheckArguments* check) {
   command->add_option("MECHANISM", check->mechanisms, "mechanism files, YAML or JSON")
       ->required()
       ->type_name("FILE");
+  AddSet(command, &check->set);
   AddTolerance(command, &check->tolerance);
   command->add_flag("--dh", check->dh, "print the Denavit-Hartenberg rows as well");
   command
@@ -314,6 +328,7 @@ void AddStudyOptions(CLI::App* command, const char* results, vmech::LoadsArgumen
   command->add_option("--threads", loads->threads, "threads; 0 for all processors")
       ->check(CLI::Range(0, 64, "0..64"))
       ->capture_default_str();
+  AddSet(command, &loads->set);
   AddTolerance(command, &loads->tolerance);
   command->add_flag("--strict", loads->strict, kStrictHelp);
   command->add_flag("-q,--quiet", loads->quiet, "print nothing but errors");
@@ -331,6 +346,7 @@ void AddCompare(CLI::App* app, vmech::CompareArguments* compare) {
       ->add_option("--out", compare->out,
                    "folder for the results (default: <suite>-compare in this folder)")
       ->type_name("DIR");
+  AddSet(command, &compare->set);
   command->add_option("--jobs", compare->jobs, "processes; 0 for one per processor")
       ->check(CLI::Range(0, 256, "0..256"))
       ->capture_default_str();

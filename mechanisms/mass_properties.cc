@@ -4,6 +4,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "vmech/base/dual.h"
+
 namespace vmech {
 namespace {
 
@@ -11,8 +13,9 @@ constexpr double kNegativeTolerance = 1e-6;  // of the scale: a moment that ough
 constexpr double kTriangleTolerance = 5e-3;  // of the scale: half a unit in the third digit
 
 /// m (p.p 1 - p p'), the inertia of a point mass.
-Matrix3d PointInertia(double mass, const Vector3d& p) {
-  return mass * (p.squaredNorm() * Matrix3d::Identity() - p * p.transpose());
+template <typename T>
+Matrix3<T> PointInertia(const T& mass, const Vector3<T>& p) {
+  return mass * (p.squaredNorm() * Matrix3<T>::Identity() - p * p.transpose());
 }
 
 }  // namespace
@@ -29,12 +32,39 @@ Matrix3d RotatedInertia(const Matrix3d& R_AB, const Matrix3d& I_B) {
 }
 
 Matrix3d InertiaAboutPoint(const Matrix3d& I_cm, double mass, const Vector3d& p_PBcm) {
-  return I_cm + PointInertia(mass, p_PBcm);
+  return I_cm + PointInertia<double>(mass, p_PBcm);
 }
 
 Matrix3d InertiaAboutCenterOfGravity(const Matrix3d& I_P, double mass, const Vector3d& p_PBcm) {
-  return I_P - PointInertia(mass, p_PBcm);
+  return I_P - PointInertia<double>(mass, p_PBcm);
 }
+
+template <typename T>
+BodyNumbers<T> InFrame(const Pose<T>& X_AB, const BodyNumbers<T>& body_B) {
+  return {body_B.mass, X_AB * body_B.p_cm, X_AB.R * body_B.I_cm * X_AB.R.transpose()};
+}
+
+template <typename T>
+BodyNumbers<T> Composed(const std::vector<BodyNumbers<T>>& bodies) {
+  BodyNumbers<T> whole;
+  for (const BodyNumbers<T>& body : bodies) {
+    whole.mass += body.mass;
+    whole.p_cm += body.mass * body.p_cm;
+  }
+  if (whole.mass > T(0)) whole.p_cm /= whole.mass;
+  for (const BodyNumbers<T>& body : bodies) {
+    const Vector3<T> p = body.p_cm - whole.p_cm;
+    whole.I_cm += body.I_cm + PointInertia<T>(body.mass, p);
+  }
+  const Matrix3<T> transposed = whole.I_cm.transpose();
+  whole.I_cm = T(0.5) * (whole.I_cm + transposed);
+  return whole;
+}
+
+template BodyNumbers<double> InFrame(const Posed&, const BodyNumbers<double>&);
+template BodyNumbers<Dual> InFrame(const Pose<Dual>&, const BodyNumbers<Dual>&);
+template BodyNumbers<double> Composed(const std::vector<BodyNumbers<double>>&);
+template BodyNumbers<Dual> Composed(const std::vector<BodyNumbers<Dual>>&);
 
 Vector3d PrincipalMoments(const Matrix3d& I) {
   return Eigen::SelfAdjointEigenSolver<Matrix3d>(I, Eigen::EigenvaluesOnly).eigenvalues();

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "vmech/base/pose.h"
 #include "vmech/mechanisms/mechanism.h"
 
 namespace vmech {
@@ -19,6 +21,21 @@ Matrix3d RotatedInertia(const Matrix3d& R_AB, const Matrix3d& I_B);
 Matrix3d InertiaAboutPoint(const Matrix3d& I_cm, double mass, const Vector3d& p_PBcm);
 /// The inverse: I_cm from I_P.
 Matrix3d InertiaAboutCenterOfGravity(const Matrix3d& I_P, double mass, const Vector3d& p_PBcm);
+
+/// A rigid body as numbers, T double or Dual: mass [kg], centre of gravity [m] and inertia about
+/// it [kg m^2] in some frame.
+template <typename T>
+struct BodyNumbers {
+  T mass = T(0);
+  Vector3<T> p_cm = Vector3<T>::Zero();
+  Matrix3<T> I_cm = Matrix3<T>::Zero();
+};
+/// A body, given in a frame B, in the frame A.
+template <typename T>
+BodyNumbers<T> InFrame(const Pose<T>& X_AB, const BodyNumbers<T>& body_B);
+/// Several bodies in one frame as one, by the parallel axis theorem.
+template <typename T>
+BodyNumbers<T> Composed(const std::vector<BodyNumbers<T>>& bodies);
 
 /// The principal moments [kg m^2], ascending.
 Vector3d PrincipalMoments(const Matrix3d& I);

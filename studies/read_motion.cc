@@ -15,6 +15,7 @@ namespace vmech {
 namespace {
 
 constexpr int kMaxSteps = 10'000'000;
+constexpr Unit kRpm{2 * std::numbers::pi / 60, {0, 0, -1, 1}};
 
 /// When the poses of a study are.
 struct PoseTimes {
@@ -68,7 +69,7 @@ PoseTimes ReadRun(const Node& node, bool rotates, double speed, const Units& uni
   const Node turns = node["turns"], duration = node["duration"], steps = node["steps"];
   if (!turns == !duration) node.KeyError("give either 'turns' or 'duration'");
   if (!steps) node.KeyError("the key 'steps' is missing: the number of steps from pose to pose");
-  double time = units.time * duration.Positive(1);
+  double time = duration.Positive(units.time, 1);
   bool repeats = false;
   if (turns) {
     if (!rotates) turns.KeyError("this freedom is a translation; give the 'duration'");
@@ -190,9 +191,10 @@ void ReadHandDrive(const Node& node, const Units& units, const std::filesystem::
   if (!node.CheckKeys({"grasp", "table"}, {"steps", "repeats", "stiffness"})) return;
   HandDrive hand;
   hand.grasp = FindPart(node["grasp"], "grasp", study->mechanism.grasps);
-  const std::vector<double> stiffness = node["stiffness"].Numbers(6);
+  const std::vector<double> stiffness =
+      node["stiffness"].Numbers(SixUnits(units.stiffness, units.rotational_stiffness));
   for (size_t i = 0; i < stiffness.size(); ++i) {
-    hand.stiffness[i] = stiffness[i] * (i < 3 ? units.stiffness : units.rotational_stiffness);
+    hand.stiffness[i] = stiffness[i];
     if (!(stiffness[i] > 0)) node["stiffness"].Error("must be greater than zero");
   }
   if (hand.grasp < 0) return;
@@ -271,8 +273,8 @@ double ReadSpeed(const Node& node, bool rotates, const Units& units) {
   const Node rpm = node["rpm"], speed = node["speed"];
   if (rpm && speed) speed.KeyError("give either 'rpm' or 'speed'");
   if (rpm && !rotates) rpm.KeyError("this freedom is a translation; give its 'speed'");
-  if (rpm) return rpm.Number(1) * 2 * std::numbers::pi / 60;
-  return speed.Number(1) * (rotates ? units.angular_velocity : units.velocity);
+  if (rpm) return rpm.Figure(kRpm, 1) * 2 * std::numbers::pi / 60;
+  return speed.Number(rotates ? units.angular_velocity : units.velocity, 1);
 }
 
 std::optional<HandTable> ReadHandTable(const Node& node, const Units& units,
@@ -354,7 +356,7 @@ std::string MotionInWords(const Node& node, const LoadStudy& study) {
       const JointDrive& driven = study.drives[k];
       words += "." + NameOfFreedom(study.mechanism.joints[driven.joint].type, driven.freedom);
     }
-    if (drive["rpm"]) words += fmt::format(" at {:g} rpm", drive["rpm"].Number());
+    if (drive["rpm"]) words += fmt::format(" at {:g} rpm", drive["rpm"].Figure(kRpm));
     if (drive["speed"]) words += " at constant speed";
     if (drive["table"]) words += " through " + drive["table"].Text();
     if (drive["turns"])

@@ -26,7 +26,7 @@ struct FreedomUnits {
         damping(rotates ? units.rotational_damping : units.damping) {}
 
   bool rotates;
-  double position, force, stiffness, damping;
+  Unit position, force, stiffness, damping;
 };
 
 /// The joint and the freedom that an entry names; no joint if there is none, which is reported.
@@ -54,7 +54,7 @@ TimeTable ReadForceTable(const Node& node, double unit, const Units& units,
 /// What a controller wants: a position to hold, or a speed.
 MotionLaw ReadWanted(const Node& node, const FreedomUnits& unit, double start, const Units& units) {
   if (const Node hold = node["hold"]) {
-    return MotionLaw::Uniform(unit.position * hold.Number(), 0);
+    return MotionLaw::Uniform(hold.Number(unit.position), 0);
   }
   return MotionLaw::Uniform(start, ReadSpeed(node, unit.rotates, units));
 }
@@ -63,8 +63,8 @@ void ReadController(const Node& node, const FreedomUnits& unit, double start, co
                     JointMotor* motor) {
   motor->law = JointMotor::Law::kController;
   motor->wanted = ReadWanted(node, unit, start, units);
-  motor->stiffness = unit.stiffness * node["stiffness"].NonNegative(0);
-  motor->damping = unit.damping * node["damping"].NonNegative(0);
+  motor->stiffness = node["stiffness"].NonNegative(unit.stiffness, 0);
+  motor->damping = node["damping"].NonNegative(unit.damping, 0);
   if (motor->stiffness == 0 && motor->damping == 0) {
     node.KeyError("a controller needs 'stiffness', 'damping' or both");
   }
@@ -88,7 +88,7 @@ JointMotor ReadMotor(const Node& node, const Units& units, const std::filesystem
         "and 'rpm'");
     return motor;
   }
-  if (const Node most = node["max_force"]) motor.max_force = unit.force * most.Positive();
+  if (const Node most = node["max_force"]) motor.max_force = most.Positive(unit.force);
   if (controls) {
     const double start = mechanism.joints[motor.at.joint].start[motor.at.freedom];
     ReadController(node, unit, start, units, &motor);
@@ -99,9 +99,9 @@ JointMotor ReadMotor(const Node& node, const Units& units, const std::filesystem
   }
   if (node["table"]) {
     motor.force = ReadForceTable(node["table"], unit.force, units, folder);
-    if (const Node period = node["period"]) motor.force.period = units.time * period.Positive();
+    if (const Node period = node["period"]) motor.force.period = period.Positive(units.time);
   } else {
-    motor.force = {{0}, {unit.force * node["force"].Number()}};
+    motor.force = {{0}, {node["force"].Number(unit.force)}};
   }
   return motor;
 }
@@ -132,16 +132,16 @@ CoordinateWatch ReadWatch(const Node& node, const Units& units, const Mechanism&
   if (!node.CheckKeys({"joint", "at"}, {"freedom", "ends"})) return watch;
   watch.at = ReadFreedomId(node, mechanism);
   if (watch.at.joint < 0) return watch;
-  watch.value = FreedomUnits(units, mechanism, watch.at).position * node["at"].Number();
+  watch.value = node["at"].Number(FreedomUnits(units, mechanism, watch.at).position);
   watch.ends_run = node["ends"].Boolean(false);
   return watch;
 }
 
-Vector6d ReadSixGains(const Node& node, double linear, double angular) {
+Vector6d ReadSixGains(const Node& node, const Unit& linear, const Unit& angular) {
   Vector6d gains = Vector6d::Zero();
-  const std::vector<double> numbers = node.Numbers(6);
+  const std::vector<double> numbers = node.Numbers(SixUnits(linear, angular));
   for (size_t i = 0; i < numbers.size(); ++i) {
-    gains[static_cast<Eigen::Index>(i)] = numbers[i] * (i < 3 ? linear : angular);
+    gains[static_cast<Eigen::Index>(i)] = numbers[i];
     if (!(numbers[i] >= 0)) node.Error("must not be negative");
   }
   return gains;
@@ -187,7 +187,7 @@ SimulationOptions ReadOptions(const Node& node) {
 
 /// Evenly from 0 to the duration.
 std::vector<double> ReadTimes(const Node& node, const Units& units) {
-  const double duration = units.time * node["duration"].Positive(1);
+  const double duration = node["duration"].Positive(units.time, 1);
   const int steps = node["steps"].Integer(400, 1, kMostPoses);
   std::vector<double> times;
   for (int i = 0; i <= steps; ++i) times.push_back(duration * i / steps);

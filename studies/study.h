@@ -11,6 +11,7 @@
 #include "vmech/dynamics/loads/load_study.h"
 #include "vmech/dynamics/simulation/simulation.h"
 #include "vmech/dynamics/simulation/simulation_result.h"
+#include "vmech/mechanisms/files/mechanism_source.h"
 
 namespace vmech {
 
@@ -44,7 +45,8 @@ struct StudyFile {
   LoadStudy study;
   std::optional<SimulationRequest> simulation;  ///< instead of a motion
   std::vector<BearingRequest> bearings;
-  std::vector<Bearing> catalogue;       ///< the built-in one unless the file names another
+  std::vector<Bearing> catalogue;                ///< the built-in one unless the file names another
+  std::vector<StatedParameter> parameters = {};  ///< of the mechanism and the study
   std::vector<std::string> notes = {};  ///< what the file says in a manner that is no longer used
   /// The study itself, its mechanism, its tables and its catalogue, each once, as they were read.
   std::vector<InputFile> inputs = {};

@@ -3,13 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "vmech/dynamics/bearings/catalogue.h"
-#include "vmech/mechanisms/files/reader.h"
+#include "vmech/mechanisms/files/mechanism_source.h"
+#include "vmech/mechanisms/files/parameters.h"
 #include "vmech/mechanisms/freedoms.h"
 #include "vmech/studies/read_motion.h"
 #include "vmech/studies/read_simulation.h"
@@ -20,23 +26,6 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr const char* kComponents[] = {"fx", "fy", "fz", "mx", "my", "mz"};
-
-/// Reads the mechanism that a study names; what is wrong with it joins what is wrong with the
-/// study.
-bool ReadNamedMechanism(const Node& node, const std::filesystem::path& folder, StudyFile* file) {
-  const std::string name = node.Text();
-  if (name.empty()) return false;
-  file->mechanism_path = folder / name;
-  try {
-    const std::string text = ReadTextFile(file->mechanism_path);
-    node.document().NoteNamedFile({file->mechanism_path, Sha256(text)});
-    file->study.mechanism = ParseMechanism(text, file->mechanism_path.string());
-    return true;
-  } catch (const FileErrors& errors) {
-    for (const FileError& error : errors.errors()) node.document().Report(error);
-  }
-  return false;
-}
 
 /// The wrench in a row of a table, or in the keys `force` and `moment`.
 Wrenchd WrenchOfRow(const CsvTable& table, const Units& units, size_t row) {
@@ -60,11 +49,11 @@ double PeriodOfTurns(const std::vector<double>& at) {
 
 /// What a table is over, time or the coordinate of the first drive: fills `over` and `at`. Returns
 /// the unit of the first column; none if the columns are wrong.
-std::optional<double> ReadArgument(const Node& node, const CsvTable& table, const Units& units,
-                                   const LoadStudy& study, ExternalLoad* load) {
+std::optional<Unit> ReadArgument(const Node& node, const CsvTable& table, const Units& units,
+                                 const LoadStudy& study, ExternalLoad* load) {
   std::string argument = "t";
   std::string known = "'t'";
-  double unit = units.time;
+  Unit unit = units.time;
   if (study.times.empty()) return {};  // the motion is wrong, as reported there
   load->over = ExternalLoad::Over::kTime;
   if (!study.drives.empty()) {
@@ -87,14 +76,14 @@ std::optional<double> ReadArgument(const Node& node, const CsvTable& table, cons
   if (!CheckColumns(node, table, {argument}, {std::begin(kComponents), std::end(kComponents)})) {
     return {};
   }
-  for (const double at : table.columns[0]) load->at.push_back(unit * at);
+  for (const double at : table.columns[0]) load->at.push_back(unit.factor * at);
   return unit;
 }
 
 /// The period of a table: as stated, or whole turns of a drive that rotates.
-double ReadPeriod(const Node& period, double unit, const LoadStudy& study,
+double ReadPeriod(const Node& period, const Unit& unit, const LoadStudy& study,
                   const ExternalLoad& load) {
-  if (period) return unit * period.Positive();
+  if (period) return period.Positive(unit);
   if (load.over != ExternalLoad::Over::kDriveCoordinate) return 0;
   const JointDrive& drive = study.drives[0];
   const JointType type = study.mechanism.joints[drive.joint].type;
@@ -123,7 +112,7 @@ void ReadLoadTable(const Node& node, const Units& units, const std::filesystem::
   }
   const CsvTable table = ReadTable(node["table"], folder);
   if (table.rows() == 0) return;
-  const std::optional<double> unit = ReadArgument(node["table"], table, units, study, load);
+  const std::optional<Unit> unit = ReadArgument(node["table"], table, units, study, load);
   if (!unit) return;
   for (size_t i = 0; i < table.rows(); ++i) load->wrenches.push_back(WrenchOfRow(table, units, i));
   load->period = ReadPeriod(node["period"], *unit, study, *load);
@@ -139,7 +128,7 @@ ExternalLoad ReadExternalLoad(const Node& node, const Units& units,
   }
   node["description"].Text();
   load.link = FindPart(node["link"], "link", study.mechanism.links);
-  load.p_L = units.length * node["at"].Vector3();
+  load.p_L = node["at"].Vector3(units.length);
   load.axes = node["axes"].Word<ExternalLoad::Axes>(
       {{"world", ExternalLoad::Axes::kWorld}, {"link", ExternalLoad::Axes::kLink}},
       ExternalLoad::Axes::kWorld);
@@ -150,8 +139,7 @@ ExternalLoad ReadExternalLoad(const Node& node, const Units& units,
   if (!node["force"] && !node["moment"]) node.KeyError("give 'force', 'moment' or 'table'");
   if (const Node period = node["period"]) period.KeyError("used with a table only");
   load.at = {0};
-  load.wrenches = {
-      {units.force * node["force"].Vector3(), units.torque * node["moment"].Vector3()}};
+  load.wrenches = {{node["force"].Vector3(units.force), node["moment"].Vector3(units.torque)}};
   return load;
 }
 
@@ -160,7 +148,7 @@ Arrangement ReadArrangement(const Node& node, const Units& units) {
   if (const Node positions = node["positions"]) {
     arrangement.positions.clear();
     for (const Node& entry : positions.List()) {
-      arrangement.positions.push_back(units.length * entry.Number());
+      arrangement.positions.push_back(entry.Number(units.length));
     }
     if (arrangement.positions.empty()) positions.Error("a joint has one or two bearings");
   }
@@ -170,11 +158,13 @@ Arrangement ReadArrangement(const Node& node, const Units& units) {
 
 BearingRequirements ReadRequirements(const Node& node, const Units& units) {
   BearingRequirements asked;
-  if (const std::vector<double> shaft = node["shaft"].Numbers(2); !shaft.empty()) {
-    asked.shaft_min = units.length * shaft[0];
-    asked.shaft_max = units.length * shaft[1];
+  if (const std::vector<double> shaft =
+          node["shaft"].Numbers(std::array{units.length, units.length});
+      !shaft.empty()) {
+    asked.shaft_min = shaft[0];
+    asked.shaft_max = shaft[1];
   }
-  if (const Node housing = node["housing"]) asked.housing_max = units.length * housing.Positive();
+  if (const Node housing = node["housing"]) asked.housing_max = housing.Positive(units.length);
   asked.life_hours = node["life_hours"].NonNegative(asked.life_hours);
   if (const Node pair = node["pair_life_hours"]) asked.pair_life_hours = pair.NonNegative();
   asked.reliability = node["reliability"].Positive(asked.reliability);
@@ -238,7 +228,7 @@ void ReadReferences(const Node& root, const std::filesystem::path& folder, Study
   for (const Node& entry : root["external"].List()) {
     loads.external.push_back(ReadExternalLoad(entry, units, folder, loads));
   }
-  if (const Node length = root["norm_length"]) loads.norm_length = units.length * length.Positive();
+  if (const Node length = root["norm_length"]) loads.norm_length = length.Positive(units.length);
   for (const Node& entry : root["bearings"].Map()) {
     file->bearings.push_back(ReadBearings(entry, units, loads.mechanism));
   }
@@ -284,37 +274,126 @@ void CheckMotion(const Node& root) {
   if (motion && simulation) simulation.KeyError("give either a motion or a simulation");
 }
 
+/// A study with the mechanism that it names; both see the parameters of both.
+class StudyReader {
+ public:
+  StudyReader(std::string_view text, std::filesystem::path path)
+      : text_(text), document_(text, path.string()), root_(document_.root()) {
+    file_.path = std::move(path);
+  }
+
+  StudyFile Read(std::span<const ParameterSetting> settings) {
+    if (root_.CheckKeys({"vmech_study", "mechanism"},
+                        {"motion", "simulation", "name", "description", "units", "parameters",
+                         "external", "rule", "norm_length", "bearings", "catalogue", "limits"})) {
+      ReadOwn();
+      if (OpenMechanism()) ReadRest(settings);
+    }
+    document_.ThrowErrors();
+    file_.motion = file_.simulation ? SimulationInWords(root_["simulation"], file_)
+                                    : MotionInWords(root_["motion"], file_.study);
+    file_.inputs = InputsOf(text_, file_.path, document_);
+    if (!file_.simulation) file_.notes = NotesOnFreedoms(root_["motion"], file_.study);
+    return std::move(file_);
+  }
+
+ private:
+  /// What does not refer to the mechanism.
+  void ReadOwn() {
+    CheckVersion(root_["vmech_study"]);
+    CheckMotion(root_);
+    file_.name = root_["name"].Text(file_.path.stem().string());
+    file_.description = root_["description"].Text();
+    file_.study.rule = ReadRule(root_["rule"]);
+    file_.study.units = DisplayUnitsOf(root_["units"], ReadUnits(root_["units"]));
+    file_.study.stop_at_limits =
+        root_["limits"].Word<bool>({{"warn", false}, {"stop", true}}, false);
+    file_.catalogue = ReadNamedCatalogue(root_["catalogue"], folder());
+  }
+
+  /// What is wrong with the mechanism joins what is wrong with the study.
+  bool OpenMechanism() {
+    const std::string name = root_["mechanism"].Text();
+    if (name.empty()) return false;
+    file_.mechanism_path = folder() / name;
+    try {
+      source_.emplace(ReadTextFile(file_.mechanism_path), file_.mechanism_path.string());
+      return true;
+    } catch (const FileErrors& errors) {
+      TakeErrors(errors);
+    }
+    return false;
+  }
+
+  void ReadRest(std::span<const ParameterSetting> settings) {
+    ParameterTable& table = source_->parameters();
+    const std::vector<std::string> of_mechanism = table.names();
+    const CountingUnits units = ReadUnits(root_["units"]).counting();
+    ReadParameters(root_["parameters"], units, &table);
+    ApplySettings(settings, file_.path.string(), units, &table);
+    const StudyFile begun = file_;
+    const size_t errors_before = document_.error_count();
+    while (true) {
+      try {
+        file_.study.mechanism = source_->Read();
+      } catch (const FileErrors& errors) {
+        return TakeErrors(errors);
+      }
+      for (const MechanismSource::File& file : source_->files()) {
+        document_.NoteNamedFile({file.path, Sha256(file.text)});
+      }
+      document_.SetScope({units, table.names(), source_->values(), {}});
+      ReadReferences(root_, folder(), &file_);
+      for (const ParameterUse& use : document_.uses()) {
+        if (use.alone) table.NoteUse(use.parameter, use.asked);
+      }
+      if (!table.learned()) break;
+      file_ = begun;
+      document_.ForgetErrorsAfter(errors_before);
+    }
+    file_.parameters = source_->stated();
+    RefuseUnused(of_mechanism);
+  }
+
+  /// A parameter that the mechanism has not, and that nothing here names, is a slip of the pen.
+  void RefuseUnused(const std::vector<std::string>& of_mechanism) {
+    const ParameterTable& table = source_->parameters();
+    std::set<std::string> used(of_mechanism.begin(), of_mechanism.end());
+    for (const ParameterUse& use : document_.uses()) used.insert(use.parameter);
+    for (int i = 0; i < table.size(); ++i) {
+      const std::vector<std::string>& names = table.holding(i).expression.names();
+      used.insert(names.begin(), names.end());
+    }
+    if (!root_["parameters"]) return;
+    for (const Node& entry : root_["parameters"].Map()) {
+      if (used.contains(entry.key())) continue;
+      entry.KeyError(fmt::format("{} has no parameter {}, and nothing in this study names it{}",
+                                 file_.mechanism_path.string(), Quoted(entry.key()),
+                                 DidYouMean(entry.key(), of_mechanism)));
+    }
+  }
+
+  void TakeErrors(const FileErrors& errors) {
+    for (const FileError& error : errors.errors()) document_.Report(error);
+  }
+  std::filesystem::path folder() const { return file_.path.parent_path(); }
+
+  std::string_view text_;
+  Document document_;
+  Node root_;
+  StudyFile file_;
+  std::optional<MechanismSource> source_;
+};
+
 }  // namespace
 
-StudyFile ReadStudy(const std::filesystem::path& path) {
-  return ParseStudy(ReadTextFile(path), path);
+StudyFile ReadStudy(const std::filesystem::path& path, std::span<const ParameterSetting> settings) {
+  return ParseStudy(ReadTextFile(path), path, settings);
 }
 
-StudyFile ParseStudy(std::string_view text, const std::filesystem::path& path) {
-  Document document(text, path.string());
-  const Node root = document.root();
-  StudyFile file;
-  file.path = path;
-  if (root.CheckKeys({"vmech_study", "mechanism"},
-                     {"motion", "simulation", "name", "description", "units", "external", "rule",
-                      "norm_length", "bearings", "catalogue", "limits"})) {
-    CheckVersion(root["vmech_study"]);
-    CheckMotion(root);
-    file.name = root["name"].Text(path.stem().string());
-    file.description = root["description"].Text();
-    file.study.rule = ReadRule(root["rule"]);
-    file.study.units = DisplayUnitsOf(root["units"], ReadUnits(root["units"]));
-    file.study.stop_at_limits = root["limits"].Word<bool>({{"warn", false}, {"stop", true}}, false);
-    const std::filesystem::path folder = path.parent_path();
-    file.catalogue = ReadNamedCatalogue(root["catalogue"], folder);
-    if (ReadNamedMechanism(root["mechanism"], folder, &file)) ReadReferences(root, folder, &file);
-  }
-  document.ThrowErrors();
-  file.motion = file.simulation ? SimulationInWords(root["simulation"], file)
-                                : MotionInWords(root["motion"], file.study);
-  file.inputs = InputsOf(text, path, document);
-  if (!file.simulation) file.notes = NotesOnFreedoms(root["motion"], file.study);
-  return file;
+StudyFile ParseStudy(std::string_view text, const std::filesystem::path& path,
+                     std::span<const ParameterSetting> settings) {
+  return StudyReader(text, path).Read(settings);
 }
 
 }  // namespace vmech

@@ -5,12 +5,16 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <set>
 #include <stdexcept>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "vmech/apps/compare/digest.h"
+#include "vmech/mechanisms/files/mechanism_source.h"
+#include "vmech/mechanisms/files/parameters.h"
 #include "vmech/mechanisms/files/read_link.h"
-#include "vmech/mechanisms/files/reader.h"
 #include "vmech/mechanisms/files/units.h"
 #include "vmech/studies/read_motion.h"
 
@@ -128,10 +132,14 @@ std::vector<int> ReadBlocksOf(const Node& node, const std::vector<TargetBlock>& 
 
 class SuiteReader {
  public:
-  SuiteReader(std::string_view text, const std::filesystem::path& path)
-      : document_(text, path.string()), folder_(path.parent_path()) {
+  SuiteReader(std::string_view text, const std::filesystem::path& path,
+              std::span<const ParameterSetting> settings)
+      : document_(text, path.string()), folder_(path.parent_path()), settings_(settings) {
     suite_.path = path;
     suite_.digest = DigestOf(text);
+    for (const ParameterSetting& setting : settings) {
+      suite_.digest = DigestOf(PlaceOf(setting), suite_.digest);
+    }
   }
 
   Suite Read() {
@@ -151,6 +159,7 @@ class SuiteReader {
       if (document_.ok()) CheckSize(root["targets"]);
     }
     document_.ThrowErrors();
+    RequireUsed();
     return std::move(suite_);
   }
 
@@ -167,6 +176,14 @@ class SuiteReader {
       suite_.stopping.Validate();
     } catch (const std::invalid_argument& defect) {
       root["stopping"].Error(defect.what());
+    }
+  }
+
+  void RequireUsed() const {
+    for (const ParameterSetting& setting : settings_) {
+      if (set_.contains(setting.name)) continue;
+      throw FileErrors(PlaceOf(setting), fmt::format("no mechanism of {} has a parameter {}",
+                                                     suite_.path.string(), Quoted(setting.name)));
     }
   }
 
@@ -210,9 +227,18 @@ class SuiteReader {
     if (name.empty()) return false;
     try {
       const std::filesystem::path path = folder_ / name;
-      const std::string text = ReadTextFile(path);
-      suite_.digest = DigestOf(text, suite_.digest);
-      *mechanism = ParseMechanism(text, path.string());
+      MechanismSource source(ReadTextFile(path), path.string());
+      std::vector<ParameterSetting> known;
+      for (const ParameterSetting& setting : settings_) {
+        if (source.parameters().Find(setting.name) < 0) continue;
+        known.push_back(setting);
+        set_.insert(setting.name);
+      }
+      ApplySettings(known, path.string(), source.units(), &source.parameters());
+      *mechanism = source.Read();
+      for (const MechanismSource::File& file : source.files()) {
+        suite_.digest = DigestOf(file.text, suite_.digest);
+      }
       return true;
     } catch (const FileErrors& errors) {
       const bool seen = std::find(faulty_.begin(), faulty_.end(), name) != faulty_.end();
@@ -226,17 +252,20 @@ class SuiteReader {
   Document document_;
   std::filesystem::path folder_;
   Suite suite_;
+  std::span<const ParameterSetting> settings_;
+  std::set<std::string> set_;  ///< names of settings that a mechanism has
   std::vector<std::string> faulty_;
 };
 
 }  // namespace
 
-Suite ReadSuite(const std::filesystem::path& path) {
-  return ParseSuite(ReadTextFile(path), path);
+Suite ReadSuite(const std::filesystem::path& path, std::span<const ParameterSetting> settings) {
+  return ParseSuite(ReadTextFile(path), path, settings);
 }
 
-Suite ParseSuite(std::string_view text, const std::filesystem::path& path) {
-  return SuiteReader(text, path).Read();
+Suite ParseSuite(std::string_view text, const std::filesystem::path& path,
+                 std::span<const ParameterSetting> settings) {
+  return SuiteReader(text, path, settings).Read();
 }
 
 }  // namespace vmech

@@ -85,7 +85,7 @@ Mechanism Assembled(const HapticArguments& arguments, Mechanism mechanism) {
 /// A mechanism that is held, where the hand takes hold.
 struct HeldMechanism {
   explicit HeldMechanism(const HapticArguments& arguments)
-      : HeldMechanism(ReadSubject(arguments.file, arguments.grasp),
+      : HeldMechanism(ReadSubject(arguments.file, arguments.grasp, arguments.set),
                       [&](const Mechanism& mechanism) { return Assembled(arguments, mechanism); }) {
   }
   /// That of a recording, as it was.
@@ -162,6 +162,7 @@ RunnerOptions OptionsOf(const HapticArguments& arguments, const HeldMechanism& h
                    {"estimator", arguments.estimator},
                    {"wrench", arguments.wrench},
                    {"gripper", fmt::to_string(static_cast<int>(arguments.gripper))}};
+  for (const std::string& word : arguments.set) options.notes.emplace_back("set", word);
   for (const auto& note : NotesOf(rendering.promise)) options.notes.push_back(note);
   options.mechanism = RecordedMechanismOf(held.tree);
   if (arguments.free_running) options.realtime.reset();
@@ -261,6 +262,9 @@ HapticArguments ArgumentsOf(const Recording& recording, const ReplayArguments& r
     if (const std::string text = recording.Note(key); !text.empty()) *word = text;
   }
   arguments.gripper = number("gripper") != 0;
+  for (const auto& [key, word] : recording.notes) {
+    if (key == "set") arguments.set.push_back(word);
+  }
   arguments.seconds = recording.period * static_cast<double>(recording.ticks.size());
   arguments.free_running = !replay.view;
   arguments.view = replay.view;

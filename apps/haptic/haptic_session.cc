@@ -14,6 +14,7 @@
 
 #include "vmech/apps/console/option_error.h"
 #include "vmech/apps/files/file_kind.h"
+#include "vmech/apps/files/parameter_options.h"
 #include "vmech/hw_interface/haply/haply_master.h"
 #include "vmech/hw_interface/loop/replay_master.h"
 #include "vmech/hw_interface/masters/plugin_master.h"
@@ -31,8 +32,9 @@
 namespace vmech {
 namespace {
 
-HapticSubject ReadHeldStudy(const std::filesystem::path& file) {
-  StudyFile study = ReadStudy(file);
+HapticSubject ReadHeldStudy(const std::filesystem::path& file,
+                            std::span<const ParameterSetting> settings) {
+  StudyFile study = ReadStudy(file, settings);
   if (!study.study.hand) {
     throw FileErrors(file.string(),
                      "no hand moves this study; give `motion` a grasp, or name the mechanism");
@@ -183,14 +185,16 @@ Rendering MakeRendering(const RenderingRequest& request, const KinematicTree& tr
   return (paper ? MakePaper : MakeCoupled)(request, tree, grasp, q, device);
 }
 
-HapticSubject ReadSubject(const std::filesystem::path& file, const std::string& grasp) {
-  HapticSubject subject =
-      KindOfFile(file) == FileKind::kStudy
-          ? ReadHeldStudy(file)
-          : HapticSubject{
-                ReadAs({"haptic", {FileKind::kMechanism, FileKind::kStudy}}, file, ReadMechanism),
-                0,
-                {}};
+HapticSubject ReadSubject(const std::filesystem::path& file, const std::string& grasp,
+                          const std::vector<std::string>& set) {
+  HapticSubject subject = ReadWithSettings(set, [&](auto settings) {
+    if (KindOfFile(file) == FileKind::kStudy) return ReadHeldStudy(file, settings);
+    const Taken taken{"haptic", {FileKind::kMechanism, FileKind::kStudy}};
+    return HapticSubject{
+        ReadAs(taken, file, [&](const auto& path) { return ReadMechanism(path, settings); }),
+        0,
+        {}};
+  });
   if (!grasp.empty()) subject.grasp = FindGrasp(subject.mechanism, grasp);
   if (subject.grasp >= 0 && subject.grasp < static_cast<int>(subject.mechanism.grasps.size())) {
     return subject;

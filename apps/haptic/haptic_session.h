@@ -30,7 +30,8 @@ struct HapticSubject {
 /// Reads a mechanism, or a study that a hand moves. `grasp` by name; empty: the study's, or the
 /// first.
 /// @throws FileErrors naming the file and what is wrong; OptionError for an unknown grasp.
-HapticSubject ReadSubject(const std::filesystem::path& file, const std::string& grasp);
+HapticSubject ReadSubject(const std::filesystem::path& file, const std::string& grasp,
+                          const std::vector<std::string>& set = {});
 
 /// How the device's axes lie in the world: its z against gravity (along z if there is none).
 Matrix3d DeviceAxes(const Mechanism& mechanism);

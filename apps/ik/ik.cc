@@ -10,6 +10,7 @@
 
 #include "vmech/apps/console/option_error.h"
 #include "vmech/apps/files/file_kind.h"
+#include "vmech/apps/files/parameter_options.h"
 #include "vmech/kinematics/inverse/hand_tracker.h"
 #include "vmech/kinematics/loops/assembled_mechanism.h"
 #include "vmech/kinematics/loops/closure.h"
@@ -286,7 +287,10 @@ void ReportLoops(const KinematicTree& tree, InverseKinematics& problem, IkAnswer
 
 IkAnswer AnswerIk(const IkQuestion& question) {
   IkAnswer answer;
-  Mechanism mechanism = ReadAs({"ik", {FileKind::kMechanism}}, question.mechanism, ReadMechanism);
+  Mechanism mechanism = ReadWithSettings(question.set, [&](auto settings) {
+    return ReadAs({"ik", {FileKind::kMechanism}}, question.mechanism,
+                  [&](const auto& file) { return ReadMechanism(file, settings); });
+  });
   if (question.target.empty()) throw OptionError("--target is required: where the hand is");
   ReadFileUnits(question.mechanism, &answer);
   const Backend backend = ReadSolver(question.solver);

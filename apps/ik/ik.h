@@ -22,6 +22,7 @@ struct IkQuestion {
   bool paper_rotation = false;  ///< the rotation error of paper eq. (3)
   bool no_limits = false;
   std::optional<double> tolerance;  ///< instead of the mechanism's own
+  std::vector<std::string> set;     ///< parameters, "crank=60"
 };
 
 /// The branch of a solution, seen from the start.

@@ -12,6 +12,7 @@
 #include "vmech/apps/commands.h"
 #include "vmech/apps/console/progress_bar.h"
 #include "vmech/apps/files/file_kind.h"
+#include "vmech/apps/files/parameter_options.h"
 #include "vmech/apps/files/result_folder.h"
 #include "vmech/apps/loads/named_study.h"
 #include "vmech/apps/loads/printed_summary.h"
@@ -45,7 +46,10 @@ int Threads(const LoadsArguments& arguments) {
 
 /// @throws FileErrors if the study is for the other command.
 StudyFile ReadFor(const char* command, const LoadsArguments& arguments) {
-  StudyFile file = ReadAs({command, {FileKind::kStudy}}, arguments.study, ReadStudy);
+  StudyFile file = ReadWithSettings(arguments.set, [&](auto settings) {
+    return ReadAs({command, {FileKind::kStudy}}, arguments.study,
+                  [&](const auto& path) { return ReadStudy(path, settings); });
+  });
   const bool simulates = std::string_view(command) == "simulate";
   if (simulates != file.simulation.has_value()) {
     throw FileErrors(arguments.study.string(),

@@ -154,6 +154,9 @@ std::string SummaryJson(const StudyFile& file, const StudyOutcome& outcome) {
             {"max_closure_error", Finite(loads.max_closure)},
             {"max_power_error", Finite(loads.max_power_error)},
             {"singular_poses", loads.singular_poses}};
+  for (const StatedParameter& parameter : file.parameters) {
+    json["parameters"][parameter.name] = {{"value", parameter.figure}, {"unit", parameter.unit}};
+  }
   Json drives = Json::array();
   for (size_t k = 0; k < file.study.drives.size(); ++k) {
     double peak = 0;

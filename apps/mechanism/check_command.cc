@@ -9,6 +9,7 @@
 #include "vmech/apps/files/file_kind.h"
 #include "vmech/apps/files/inputs_apart.h"
 #include "vmech/apps/files/output_folder.h"
+#include "vmech/apps/files/parameter_options.h"
 #include "vmech/apps/mechanism/check.h"
 #include "vmech/apps/view/meshes.h"
 #include "vmech/apps/view/view_page.h"
@@ -53,7 +54,10 @@ void WritePicture(const MechanismCheck& check, const CheckArguments& arguments) 
 }
 
 Checked CheckFile(const std::filesystem::path& path, const CheckArguments& arguments) {
-  Mechanism mechanism = ReadAs({"check", {FileKind::kMechanism}}, path, ReadMechanism);
+  Mechanism mechanism = ReadWithSettings(arguments.set, [&](auto settings) {
+    return ReadAs({"check", {FileKind::kMechanism}}, path,
+                  [&](const auto& file) { return ReadMechanism(file, settings); });
+  });
   if (arguments.tolerance) mechanism.tolerance = *arguments.tolerance;
   const MechanismCheck check = CheckMechanism(mechanism);
   if (!arguments.draw.empty()) WritePicture(check, arguments);

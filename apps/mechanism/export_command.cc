@@ -5,6 +5,7 @@
 #include "vmech/apps/files/file_kind.h"
 #include "vmech/apps/files/inputs_apart.h"
 #include "vmech/apps/files/output_folder.h"
+#include "vmech/apps/files/parameter_options.h"
 #include "vmech/kinematics/loops/assembled_mechanism.h"
 #include "vmech/mechanisms/dh/denavit_hartenberg.h"
 #include "vmech/mechanisms/exchange/mjcf.h"
@@ -36,8 +37,10 @@ ExportedText Exported(const Mechanism& mechanism, const ExportArguments& argumen
 
 int RunExport(const ExportArguments& arguments) {
   RequireOutputsApart({arguments.mechanism}, {arguments.out});
-  Mechanism mechanism =
-      ReadAs({"export", {FileKind::kMechanism}}, arguments.mechanism, ReadMechanism);
+  Mechanism mechanism = ReadWithSettings(arguments.set, [&](auto settings) {
+    return ReadAs({"export", {FileKind::kMechanism}}, arguments.mechanism,
+                  [&](const auto& file) { return ReadMechanism(file, settings); });
+  });
   if (arguments.tolerance) mechanism.tolerance = *arguments.tolerance;
   if (arguments.dh_frames) {
     mechanism = DrawnInLinkFrames(mechanism, DeduceDhTable(mechanism, FindSpanningTree(mechanism)));

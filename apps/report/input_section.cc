@@ -46,6 +46,17 @@ Markup FileTable(const StudyFile& file) {
   return html::RenderTable(table);
 }
 
+Markup ParameterTableOf(const StudyFile& file) {
+  if (file.parameters.empty()) return {};
+  html::Table table;
+  table.columns = {{"Parameter"}, {"Value"}};
+  for (const StatedParameter& parameter : file.parameters) {
+    const std::string unit = parameter.unit.empty() ? "" : " " + parameter.unit;
+    table.rows.push_back({parameter.name, Number(parameter.figure, 12) + unit});
+  }
+  return html::RenderTable(table);
+}
+
 std::string ChoicesInWords(const StudyFile& file, std::string_view version, std::string_view date) {
   const LoadStudy& study = file.study;
   std::string words = fmt::format("Computed by vmech {}", version);
@@ -255,6 +266,7 @@ Markup InputSection(const StudyFile& file, std::string_view version, std::string
   Markup section = html::Heading(2, "What it was computed from");
   section += html::Paragraph(ChoicesInWords(file, version, date));
   section += FileTable(file);
+  section += ParameterTableOf(file);
   section += html::Paragraph(MotionInWords(file));
   section += LinkTable(mechanism);
   section += JointTable(mechanism);

@@ -12,7 +12,9 @@
 #include <utility>
 
 #include "vmech/apps/commands.h"
+#include "vmech/apps/console/option_error.h"
 #include "vmech/apps/files/file_kind.h"
+#include "vmech/apps/files/parameter_options.h"
 #include "vmech/apps/loads/named_study.h"
 #include "vmech/apps/report/motion_scene.h"
 #include "vmech/apps/view/mechanism_session.h"
@@ -100,7 +102,9 @@ void ServeMechanism(Mechanism assembled, const fs::path& file, const ViewArgumen
 }
 
 void ViewMechanism(const ViewArguments& arguments) {
-  const Mechanism mechanism = Assembled(arguments.file, ReadMechanism(arguments.file), arguments);
+  const Mechanism read = ReadWithSettings(
+      arguments.set, [&](auto settings) { return ReadMechanism(arguments.file, settings); });
+  const Mechanism mechanism = Assembled(arguments.file, read, arguments);
   const fs::path folder =
       arguments.meshes.empty() ? MeshFolderOf(arguments.file) : arguments.meshes;
   const std::vector<std::string> meshes = ReadMeshes(mechanism, folder);
@@ -110,7 +114,8 @@ void ViewMechanism(const ViewArguments& arguments) {
 }
 
 void ViewStudy(const ViewArguments& arguments) {
-  StudyFile file = ReadStudy(arguments.file);
+  StudyFile file = ReadWithSettings(
+      arguments.set, [&](auto settings) { return ReadStudy(arguments.file, settings); });
   if (arguments.tolerance) file.study.mechanism.tolerance = *arguments.tolerance;
   const StudyOutcome outcome = RunNamedStudy(file, {});
   const std::string page =
@@ -138,7 +143,12 @@ void ViewResults(const ViewArguments& arguments) {
 }  // namespace
 
 int RunView(const ViewArguments& arguments) {
-  switch (KindOfFile(arguments.file)) {
+  const FileKind kind = KindOfFile(arguments.file);
+  const bool computed = kind == FileKind::kResults || kind == FileKind::kRecording;
+  if (computed && !arguments.set.empty()) {
+    throw OptionError("--set: of a mechanism or a study; what is shown here is computed already");
+  }
+  switch (kind) {
     case FileKind::kStudy:
       ViewStudy(arguments);
       break;

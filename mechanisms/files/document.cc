@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <tuple>
 
 #include "vmech/base/printable_text.h"
-#include "vmech/mechanisms/files/explain_yaml.h"
-#include "vmech/mechanisms/files/parse_yaml.h"
+#include "vmech/mechanisms/files/yaml/explain_yaml.h"
+#include "vmech/mechanisms/files/yaml/parse_yaml.h"
+#include "vmech/mechanisms/files/yaml/scalar_text.h"
 
 namespace vmech {
 namespace {
@@ -18,68 +18,7 @@ namespace {
 constexpr size_t kMaxErrors = 50;  // more than anybody reads
 constexpr size_t kMaxName = 100;   // bytes
 
-bool IsDigits(std::string_view text) {
-  return !text.empty() &&
-         std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
-}
-
-/// True for a decimal number as in JSON or YAML 1.2: sign, digits, point, exponent. A leading
-/// zero, which some readers take for octal, is not accepted.
-bool LooksLikeNumber(std::string_view text) {
-  if (!text.empty() && (text[0] == '-' || text[0] == '+')) text.remove_prefix(1);
-  if (const size_t e = text.find_first_of("eE"); e != text.npos) {
-    std::string_view exponent = text.substr(e + 1);
-    if (!exponent.empty() && (exponent[0] == '-' || exponent[0] == '+')) exponent.remove_prefix(1);
-    if (!IsDigits(exponent)) return false;
-    text = text.substr(0, e);
-  }
-  const size_t point = std::min(text.find('.'), text.size());
-  const std::string_view whole = text.substr(0, point);
-  const std::string_view part = point < text.size() ? text.substr(point + 1) : "";
-  if (whole.size() > 1 && whole[0] == '0') return false;
-  return (IsDigits(whole) || (whole.empty() && IsDigits(part))) && (part.empty() || IsDigits(part));
-}
-
-bool IsWordFor(std::string_view text, std::initializer_list<std::string_view> words) {
-  return std::find(words.begin(), words.end(), text) != words.end();
-}
-
-bool IsBoolean(std::string_view text) {
-  return IsWordFor(text, {"true", "True", "TRUE", "false", "False", "FALSE"});
-}
-
-bool IsNotFinite(std::string_view text) {
-  if (!text.empty() && (text[0] == '-' || text[0] == '+')) text.remove_prefix(1);
-  return IsWordFor(
-      text, {".inf", ".Inf", ".INF", ".nan", ".NaN", ".NAN", "inf", "Infinity", "nan", "NaN"});
-}
-
-/// "a map", "text 'abc'": what a node is, for messages.
-std::string Describe(const DocumentItem& item) {
-  switch (item.kind) {
-    case Node::Kind::kMap:
-      return "a map";
-    case Node::Kind::kList:
-      return fmt::format("a list of {}", item.children.size());
-    case Node::Kind::kScalar:
-      if (!item.plain) return "text " + Quoted(item.text);
-      if (LooksLikeNumber(item.text)) return "the number " + item.text.substr(0, 40);
-      return Quoted(item.text);
-    default:
-      return "nothing";
-  }
-}
-
 }  // namespace
-
-std::optional<double> ParseNumber(std::string_view text) {
-  if (!LooksLikeNumber(text)) return {};
-  if (text[0] == '+') text.remove_prefix(1);
-  double value = 0;
-  const auto status = std::from_chars(text.data(), text.data() + text.size(), value).ec;
-  if (status != std::errc() || !(std::abs(value) <= kMaxNumber)) return {};
-  return value;
-}
 
 // Document
 
@@ -107,6 +46,10 @@ void Document::CheckDuplicateKeys() {
 void Document::Report(FileError error) {
   if (error.file == name_ && SlashComment(text_, error.line) > 0) {
     error.message += fmt::format("; {}", kSlashComment);
+  }
+  const std::string text = ToString(error);  // a file may be used several times
+  for (const FileError& known : errors_) {
+    if (ToString(known) == text) return;
   }
   errors_.push_back(std::move(error));
   if (errors_.size() < kMaxErrors) return;
@@ -226,43 +169,6 @@ void Node::CheckName() const {
   }
 }
 
-bool Node::IsNumber() const {
-  if (kind() != Kind::kScalar) return false;
-  const DocumentItem& item = document_->items_[index_];
-  return item.plain && ParseNumber(item.text).has_value();
-}
-
-double Node::Number(double fallback) const {
-  if (!Expect(Kind::kScalar, "a number")) return fallback;
-  const DocumentItem& item = document_->items_[index_];
-  if (const std::optional<double> value = ParseNumber(item.text); value && item.plain) {
-    return *value;
-  }
-  if (item.plain && IsNotFinite(item.text)) {
-    Error("expected a finite number, not " + Quoted(item.text));
-  } else if (item.plain && LooksLikeNumber(item.text)) {
-    Error(
-        fmt::format("{} is beyond the range of numbers here, {:g}", Quoted(item.text), kMaxNumber));
-  } else {
-    Error("expected a number, not " + Describe(item));
-  }
-  return fallback;
-}
-
-double Node::Positive(double fallback) const {
-  const double value = Number(fallback);
-  if (value > 0) return value;
-  Error(fmt::format("must be greater than zero, not {}", value));
-  return fallback;
-}
-
-double Node::NonNegative(double fallback) const {
-  const double value = Number(fallback);
-  if (value >= 0) return value;
-  Error(fmt::format("must not be negative, but is {}", value));
-  return fallback;
-}
-
 int Node::Integer(int fallback, int lowest, int highest) const {
   const double value = Number(fallback);
   if (value == std::floor(value) && value >= lowest && value <= highest) {
@@ -286,25 +192,6 @@ std::string Node::Text(std::string fallback) const {
   if (!item.plain || !(LooksLikeNumber(item.text) || IsBoolean(item.text))) return item.text;
   Error(fmt::format("expected text; write it in quotes: \"{}\"", item.text.substr(0, 40)));
   return fallback;
-}
-
-Vector3d Node::Vector3(const Vector3d& fallback) const {
-  const std::vector<double> values = Numbers(3);
-  return values.empty() ? fallback : Vector3d(values[0], values[1], values[2]);
-}
-
-std::vector<double> Node::Numbers(int count) const {
-  if (count == 1 && kind() == Kind::kScalar) return {Number()};
-  const std::string what = count == 1 ? "a number" : fmt::format("a list of {} numbers", count);
-  if (!Expect(Kind::kList, what)) return {};
-  const std::vector<Node> entries = List();
-  if (static_cast<int>(entries.size()) != count) {
-    Error(fmt::format("expected {}, not {}", what, Describe(document_->items_[index_])));
-    return {};
-  }
-  std::vector<double> values;
-  for (const Node& entry : entries) values.push_back(entry.Number());
-  return values;
 }
 
 int Node::WordIndex(std::span<const std::string> words) const {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <initializer_list>
 #include <optional>
@@ -7,12 +9,17 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include "vmech/base/dual.h"
 #include "vmech/base/pose.h"
-#include "vmech/mechanisms/files/document_item.h"
+#include "vmech/mechanisms/expressions/expression.h"
+#include "vmech/mechanisms/expressions/quantity.h"
+#include "vmech/mechanisms/expressions/unit.h"
 #include "vmech/mechanisms/files/file_errors.h"
+#include "vmech/mechanisms/files/yaml/document_item.h"
 
 namespace vmech {
 
@@ -26,6 +33,23 @@ constexpr double kMaxNumber = 1e30;  ///< magnitude of a number in a file; beyon
 /// if the text is anything else: with a leading zero (some readers take it for octal), not finite,
 /// or beyond kMaxNumber.
 std::optional<double> ParseNumber(std::string_view text);
+
+/// What the expressions of a document may name, and the units in which its bare numbers count.
+struct ExpressionScope {
+  CountingUnits units;
+  std::vector<std::string> names;  ///< those without a value are reported where they are declared
+  NamedQuantities<double> values;
+  NamedQuantities<Dual> slopes;  ///< values with a derivative, where derivatives are asked for
+};
+
+/// Where an expression names a parameter.
+struct ParameterUse {
+  std::string parameter;
+  int line = 0;
+  std::string path;
+  bool alone = false;  ///< the expression is the parameter, but for a sign
+  Unit asked;          ///< by the place where it stands alone
+};
 
 class Document;
 
@@ -70,14 +94,34 @@ class Node {
 
   /// True for a scalar without quotes that reads as a number.
   bool IsNumber() const;
-  double Number(double fallback = 0) const;
-  double Positive(double fallback = 1) const;
-  double NonNegative(double fallback = 0) const;
+  /// A number, or an expression where the document has a scope for them, as a figure in the unit
+  /// that is asked for here; T is double, or Dual for a derivative by a parameter.
+  template <typename T = double>
+  T Figure(const Unit& asked, double fallback = 0) const;
+  /// The value of a number or an expression with its unit, for a place that asks for the one given
+  /// or for any; none if it has none, as reported.
+  template <typename T>
+  std::optional<Quantity<T>> Value(const Unit* asked = nullptr) const;
+  /// A figure in SI; the fallback is a figure.
+  double Number(const Unit& asked, double fallback = 0) const;
+  double Positive(const Unit& asked, double fallback = 1) const;
+  double NonNegative(const Unit& asked, double fallback = 0) const;
+  Vector3d Vector3(const Unit& asked, const Vector3d& fallback = Vector3d::Zero()) const;
+  /// A list of exactly as many numbers as there are units, each in its own; for one a bare number
+  /// will do. Empty if absent or wrong.
+  std::vector<double> Numbers(std::span<const Unit> asked) const;
+  /// Numbers without a dimension.
+  double Number(double fallback = 0) const { return Number(Unit{}, fallback); }
+  double Positive(double fallback = 1) const { return Positive(Unit{}, fallback); }
+  double NonNegative(double fallback = 0) const { return NonNegative(Unit{}, fallback); }
+  /// The text of a scalar, whatever it reads as; else empty.
+  std::string ScalarText() const;
   int Integer(int fallback, int lowest, int highest) const;
   bool Boolean(bool fallback) const;
   std::string Text(std::string fallback = {}) const;
-  Vector3d Vector3(const Vector3d& fallback = Vector3d::Zero()) const;
-  /// Exactly `count` numbers; for count = 1 a bare number will do. Empty if absent or wrong.
+  Vector3d Vector3(const Vector3d& fallback = Vector3d::Zero()) const {
+    return Vector3(Unit{}, fallback);
+  }
   std::vector<double> Numbers(int count) const;
   /// One of a set of words.
   template <typename Enum>
@@ -92,6 +136,9 @@ class Node {
   friend class Document;
   Node(Document* document, int index) : document_(document), index_(index) {}
   int WordIndex(std::span<const std::string> words) const;
+  void ReportNoNumber() const;
+  template <typename T>
+  bool HaveValues(const Expression& expression) const;
   bool Expect(Kind expected, std::string_view what) const;
 
   Document* document_ = nullptr;
@@ -113,8 +160,15 @@ class Document {
   /// Adds to what is wrong. @throws FileErrors when that becomes too much to read.
   void Report(FileError error);
   bool ok() const { return errors_.empty(); }
+  size_t error_count() const { return errors_.size(); }
+  void ForgetErrorsAfter(size_t count) { errors_.resize(std::min(count, errors_.size())); }
   /// @throws FileErrors with everything reported so far, in the order of the lines; or returns.
   void ThrowErrors();
+
+  /// Lets numbers be expressions.
+  void SetScope(ExpressionScope scope) { scope_ = std::move(scope); }
+  /// The parameters in those expressions that were asked for their values, each place once.
+  const std::vector<ParameterUse>& uses() const { return uses_; }
 
   /// A file that the document names, with a digest of the bytes that were read.
   struct NamedFile {
@@ -128,11 +182,15 @@ class Document {
  private:
   friend class Node;
   void CheckDuplicateKeys();
+  const Expression& ExpressionOf(const Node& node, const Unit* asked);
 
   std::string name_, text_;
   std::vector<DocumentItem> items_;
   std::vector<FileError> errors_;
   std::vector<NamedFile> named_files_;
+  std::optional<ExpressionScope> scope_;
+  std::unordered_map<int, Expression> expressions_;  ///< by the index of their node
+  std::vector<ParameterUse> uses_;
 };
 
 }  // namespace vmech

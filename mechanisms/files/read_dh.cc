@@ -9,9 +9,9 @@ namespace {
 
 Posed ReadDhRow(const Node& node, const Units& units) {
   if (!node.CheckKeys({}, {"theta", "d", "a", "alpha", "beta"})) return {};
-  return PoseOf({units.angle * node["theta"].Number(), units.length * node["d"].Number(),
-                 units.length * node["a"].Number(), units.angle * node["alpha"].Number(),
-                 units.angle * node["beta"].Number()});
+  return PoseOf({node["theta"].Number(units.angle), node["d"].Number(units.length),
+                 node["a"].Number(units.length), node["alpha"].Number(units.angle),
+                 node["beta"].Number(units.angle)});
 }
 
 /// The link that an end of a joint names; null if it names an anchor, or nothing that there is.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -25,27 +26,23 @@ void ForEachFreedom(const Node& map, JointType type, Use use) {
   }
 }
 
-/// The numbers of a list, or of a map by the names of freedoms, where others are zero.
-std::vector<double> NumbersOfFreedoms(const Node& node, JointType type) {
-  if (node.kind() != Node::Kind::kMap) return node.Numbers(FreedomsOf(type));
-  std::vector<double> values(FreedomsOf(type), 0.0);
-  ForEachFreedom(node, type, [&](const Node& entry, int k) { values[k] = entry.Number(); });
-  return values;
-}
-
-/// A value per freedom, in SI: `translation` and `rotation` are the unit of each kind. Empty if
-/// the node is absent or wrong.
-std::vector<double> PerFreedom(const Node& node, JointType type, double translation,
-                               double rotation) {
-  const std::vector<bool>& rotates = FreedomsOfType(type).rotates;
-  std::vector<double> values = NumbersOfFreedoms(node, type);
-  for (size_t i = 0; i < values.size(); ++i) values[i] *= rotates[i] ? rotation : translation;
+/// A value per freedom, in SI: `translation` and `rotation` are the unit of each kind. A list, or a
+/// map by the names of freedoms, where others are zero. Empty if the node is absent or wrong.
+std::vector<double> PerFreedom(const Node& node, JointType type, const Unit& translation,
+                               const Unit& rotation) {
+  std::vector<Unit> units;
+  for (const bool rotates : FreedomsOfType(type).rotates) {
+    units.push_back(rotates ? rotation : translation);
+  }
+  if (node.kind() != Node::Kind::kMap) return node.Numbers(units);
+  std::vector<double> values(units.size(), 0.0);
+  ForEachFreedom(node, type, [&](const Node& entry, int k) { values[k] = entry.Number(units[k]); });
   return values;
 }
 
 /// The same for values that are not negative.
-std::vector<double> PerFreedomNonNegative(const Node& node, JointType type, double translation,
-                                          double rotation) {
+std::vector<double> PerFreedomNonNegative(const Node& node, JointType type, const Unit& translation,
+                                          const Unit& rotation) {
   std::vector<double> values = PerFreedom(node, type, translation, rotation);
   for (double& value : values) {
     if (value >= 0) continue;
@@ -68,7 +65,7 @@ std::vector<double> ReadSphericalStart(const Node& node, const Units& units) {
     if (std::abs(q.norm() - 1) > kExact) q.normalize();
     return {q[0], q[1], q[2], q[3]};
   }
-  const Vector3d rotation = units.angle * node.Vector3();
+  const Vector3d rotation = node.Vector3(units.angle);
   const double angle = rotation.norm();
   if (angle == 0) return ZeroCoordinates(JointType::kSpherical);
   const Vector3d xyz = std::sin(angle / 2) / angle * rotation;
@@ -87,7 +84,7 @@ void ReadStart(const Node& node, const Units& units, Joint* joint) {
 }
 
 /// One pair [lower, upper]; null where there is no limit.
-void ReadLimitPair(const Node& node, double unit, double* lower, double* upper) {
+void ReadLimitPair(const Node& node, const Unit& unit, double* lower, double* upper) {
   const std::vector<Node> pair = node.List();
   if (pair.size() != 2) {
     if (node.kind() == Node::Kind::kList) node.Error("expected a pair [lower, upper]");
@@ -95,7 +92,7 @@ void ReadLimitPair(const Node& node, double unit, double* lower, double* upper) 
   }
   double bounds[] = {*lower, *upper};
   for (int i = 0; i < 2; ++i) {
-    if (pair[i].kind() != Node::Kind::kNull) bounds[i] = unit * pair[i].Number();
+    if (pair[i].kind() != Node::Kind::kNull) bounds[i] = pair[i].Number(unit);
   }
   if (!(bounds[0] < bounds[1])) {
     node.Error("the lower limit is not below the upper one");
@@ -157,7 +154,7 @@ void ReadPassive(const Node& node, const Units& units, Joint* joint) {
 void ReadFrictionLength(const Node& node, const Units& units, bool used, std::string_view why,
                         double* length) {
   if (!node) return;
-  *length = units.length * node.Positive();
+  *length = node.Positive(units.length);
   if (!used) node.KeyError(fmt::format("not used: {}", why));
 }
 
@@ -182,18 +179,17 @@ void ReadLoadFriction(const Node& node, const Units& units, Joint* joint) {
 }
 
 void ReadStiffness(const Node& node, const Units& units, Joint* joint) {
-  const std::vector<double> values = node.Numbers(6);
+  const std::array<Unit, 6> each = SixUnits(units.stiffness, units.rotational_stiffness);
+  const std::vector<double> values = node.Numbers(each);
   if (values.empty()) return;
-  Vector6d stiffness;
   for (int i = 0; i < 6; ++i) {
-    stiffness[i] = values[i] * (i < 3 ? units.stiffness : units.rotational_stiffness);
     if (values[i] > 0 || (values[i] == 0 && FreedomsOfType(joint->type).free[i])) continue;
     node.Error(
         fmt::format("number {} must be greater than zero, not {}; the six are the stiffness "
                     "along x, y, z and about x, y, z",
-                    i + 1, values[i]));
+                    i + 1, values[i] / each[i].factor));
   }
-  joint->stiffness = stiffness;
+  joint->stiffness = Vector6d(values.data());
 }
 
 void ReadPitch(const Node& node, const Node& pitch, const Units& units, Joint* joint) {
@@ -202,8 +198,10 @@ void ReadPitch(const Node& node, const Node& pitch, const Units& units, Joint* j
     return;
   }
   if (!pitch) node.KeyError("the key 'pitch' is missing: the travel of the screw in one turn");
-  if (pitch.Number(1) == 0) pitch.Error("a screw without pitch is a revolute joint");
-  joint->pitch = units.length * pitch.Number() / (2 * std::numbers::pi);
+  if (pitch.Number(units.length, 1) == 0) {
+    pitch.Error("a screw without pitch is a revolute joint");
+  }
+  joint->pitch = pitch.Number(units.length) / (2 * std::numbers::pi);
 }
 
 /// Keys that say something about freedoms which the type does not have.

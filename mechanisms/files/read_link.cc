@@ -3,7 +3,11 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "vmech/mechanisms/files/read_body.h"
 #include "vmech/mechanisms/files/read_dh.h"
 #include "vmech/mechanisms/mass_properties.h"
 
@@ -56,7 +60,7 @@ Matrix3d ReadInertiaMatrix(const Node& node, const Units& units) {
     }
     const Node axes = node["axes"];
     if (axes) axes.CheckKeys({"z", "x"}, {"y"});
-    const Vector3d moments = units.inertia * principal.Vector3(Vector3d::Constant(kUnknown));
+    const Vector3d moments = principal.Vector3(units.inertia, Vector3d::Constant(kUnknown));
     return RotatedInertia(ReadAxes(axes), moments.asDiagonal());
   }
   if (const Node axes = node["axes"]) axes.KeyError("used with 'principal' only");
@@ -68,11 +72,10 @@ Matrix3d ReadInertiaMatrix(const Node& node, const Units& units) {
        {"products_of_inertia", OffDiagonal::kProductsOfInertia}},
       OffDiagonal::kMatrixElements);
   const double sign = convention == OffDiagonal::kMatrixElements ? 1 : -1;
-  const auto moment = [&](const char* key) { return node[key].Number(kUnknown); };
-  const auto off_diagonal = [&](const char* key) { return sign * node[key].Number(); };
-  return units.inertia * InertiaFromElements(moment("xx"), moment("yy"), moment("zz"),
-                                             off_diagonal("xy"), off_diagonal("xz"),
-                                             off_diagonal("yz"));
+  const auto moment = [&](const char* key) { return node[key].Number(units.inertia, kUnknown); };
+  const auto off_diagonal = [&](const char* key) { return sign * node[key].Number(units.inertia); };
+  return InertiaFromElements(moment("xx"), moment("yy"), moment("zz"), off_diagonal("xy"),
+                             off_diagonal("xz"), off_diagonal("yz"));
 }
 
 Matrix3d ReadInertia(const Node& node, const Units& units, double mass, const Vector3d& p_LoLcm) {
@@ -99,12 +102,78 @@ Matrix3d ReadInertia(const Node& node, const Units& units, double mass, const Ve
 
 MassProperties ReadMassProperties(const Node& link, const Units& units) {
   MassProperties properties;
-  if (const Node mass = link["mass"]) properties.mass = units.mass * mass.NonNegative(1);
-  properties.p_LoLcm = units.length * link["center_of_gravity"].Vector3();
+  if (const Node mass = link["mass"]) properties.mass = mass.NonNegative(units.mass, 1);
+  properties.p_LoLcm = link["center_of_gravity"].Vector3(units.length);
   if (const Node inertia = link["inertia"]) {
     properties.I_Lcm = ReadInertia(inertia, units, properties.mass, properties.p_LoLcm);
   }
   return properties;
+}
+
+/// The anchors of a link, of which one may be relative to another.
+class AnchorReader {
+ public:
+  AnchorReader(std::vector<Node> nodes, const Units& units)
+      : nodes_(std::move(nodes)), units_(units), states_(nodes_.size()) {
+    for (const Node& node : nodes_) anchors_.push_back({node.key(), {}});
+  }
+
+  std::vector<Anchor> Read() {
+    for (size_t i = 0; i < nodes_.size(); ++i) Visit(i);
+    return std::move(anchors_);
+  }
+
+ private:
+  enum class State { kNew, kOpen, kDone };
+
+  void Visit(size_t i) {
+    if (states_[i] != State::kNew) return;
+    states_[i] = State::kOpen;
+    const Node& node = nodes_[i];
+    node.CheckName();
+    if (node.CheckKeys({}, {"relative", "origin", "z", "x", "y", "dh"})) {
+      anchors_[i].X_LA = ReadFrame(node, units_);
+      if (const Node relative = node["relative"]) Move(relative, &anchors_[i].X_LA);
+    }
+    states_[i] = State::kDone;
+  }
+
+  void Move(const Node& relative, Posed* X) {
+    const std::string name = relative.Text();
+    std::vector<std::string> names;
+    for (size_t i = 0; i < nodes_.size(); ++i) {
+      names.push_back(nodes_[i].key());
+      if (nodes_[i].key() != name) continue;
+      if (states_[i] == State::kOpen) {
+        return relative.Error("the anchor would be relative to itself, by way of others or not");
+      }
+      Visit(i);
+      *X = anchors_[i].X_LA * *X;
+      return;
+    }
+    if (relative.kind() != Node::Kind::kScalar) return;
+    relative.Error(
+        fmt::format("the link has no anchor {}{}", Quoted(name), DidYouMean(name, names)));
+  }
+
+  std::vector<Node> nodes_;
+  const Units& units_;
+  std::vector<State> states_;
+  std::vector<Anchor> anchors_;
+};
+
+/// Mass properties of the bodies of which a link is made.
+MassProperties ReadBodies(const Node& node, const Link& link, const Units& units) {
+  for (const char* key : {"mass", "center_of_gravity", "inertia"}) {
+    if (const Node extra = node[key]) extra.KeyError("not used beside 'bodies', which give it");
+  }
+  std::vector<BodyNumbers<double>> bodies;
+  for (const Node& body : node["bodies"].List()) {
+    const BodyNumbers<double> in_itself = ReadBody(body, units);
+    bodies.push_back(InFrame(ReadFrameOn(body, link, units), in_itself));
+  }
+  const BodyNumbers<double> whole = Composed(bodies);
+  return {whole.mass, whole.p_cm, whole.I_cm};
 }
 
 }  // namespace
@@ -116,24 +185,36 @@ Posed ReadFrame(const Node& map, const Units& units) {
     }
     return ReadDhRows(dh, units);
   }
-  return {ReadAxes(map), units.length * map["origin"].Vector3()};
+  return {ReadAxes(map), map["origin"].Vector3(units.length)};
+}
+
+Posed ReadFrameOn(const Node& map, const Link& link, const Units& units) {
+  const Posed X = ReadFrame(map, units);
+  const Node relative = map["relative"];
+  const std::string name = relative.Text();
+  if (relative.kind() != Node::Kind::kScalar) return X;
+  std::vector<std::string> names;
+  for (const Anchor& anchor : link.anchors) {
+    if (anchor.name == name) return anchor.X_LA * X;
+    names.push_back(anchor.name);
+  }
+  relative.Error(fmt::format("link {} has no anchor {}{}", Quoted(link.name), Quoted(name),
+                             DidYouMean(name, names)));
+  return X;
 }
 
 Link ReadLink(const Node& node, const Units& units) {
   Link link;
   link.name = node.key();
   node.CheckName();
-  if (!node.CheckKeys({"anchors"}, {"description", "mass", "center_of_gravity", "inertia"})) {
+  if (!node.CheckKeys({"anchors"},
+                      {"description", "mass", "center_of_gravity", "inertia", "bodies"})) {
     return link;
   }
   node["description"].Text();
-  link.mass_properties = ReadMassProperties(node, units);
-  for (const Node& anchor : node["anchors"].Map()) {
-    anchor.CheckName();
-    Posed X_LA;
-    if (anchor.CheckKeys({}, {"origin", "z", "x", "y", "dh"})) X_LA = ReadFrame(anchor, units);
-    link.anchors.push_back({anchor.key(), X_LA});
-  }
+  link.anchors = AnchorReader(node["anchors"].Map(), units).Read();
+  link.mass_properties =
+      node["bodies"] ? ReadBodies(node, link, units) : ReadMassProperties(node, units);
   return link;
 }
 

@@ -12,7 +12,10 @@ namespace vmech {
 /// keys are not looked at.
 Posed ReadFrame(const Node& map, const Units& units);
 
-/// An entry of `links`: mass, center_of_gravity, inertia, anchors.
+/// The same on a link: relative to its frame, or to the anchor that the key `relative` names.
+Posed ReadFrameOn(const Node& map, const Link& link, const Units& units);
+
+/// An entry of `links`: mass, center_of_gravity, inertia or bodies, anchors.
 Link ReadLink(const Node& node, const Units& units);
 
 }  // namespace vmech

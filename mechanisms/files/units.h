@@ -1,7 +1,9 @@
 #pragma once
 
-#include <string_view>
+#include <array>
 
+#include "vmech/mechanisms/expressions/quantity.h"
+#include "vmech/mechanisms/expressions/unit.h"
 #include "vmech/mechanisms/files/document.h"
 #include "vmech/mechanisms/mechanism.h"
 
@@ -11,29 +13,36 @@ namespace vmech {
 /// so that SI = figure * number. What a file does not state:
 ///   - length, angle, mass, time: m, rad, kg, s;
 ///   - inertia: mass * length^2, velocity: length / time, angular_velocity: angle / time;
-///   - acceleration (gravity) and everything that has a force in it stay SI (m/s^2, N, N m, N/m,
-///     N m/rad, N s/m, N m s/rad), whatever the length and the angle are, unless stated by name.
+///   - acceleration (gravity), density and everything that has a force in it stay SI (m/s^2,
+///     kg/m^3, N, N m, N/m, N m/rad, N s/m, N m s/rad), whatever the length and the angle are,
+///     unless stated by name.
 struct Units {
-  double length = 1;                ///< [m]
-  double angle = 1;                 ///< [rad]
-  double mass = 1;                  ///< [kg]
-  double time = 1;                  ///< [s]
-  double velocity = 1;              ///< [m/s]
-  double angular_velocity = 1;      ///< [rad/s]
-  double acceleration = 1;          ///< [m/s^2]
-  double inertia = 1;               ///< [kg m^2]
-  double force = 1;                 ///< [N]
-  double torque = 1;                ///< [N m]
-  double stiffness = 1;             ///< [N/m]
-  double rotational_stiffness = 1;  ///< [N m/rad]
-  double damping = 1;               ///< [N s/m]
-  double rotational_damping = 1;    ///< [N m s/rad]
+  Unit length{1, {1}};                           ///< [m]
+  Unit angle{1, {0, 0, 0, 1}};                   ///< [rad]
+  Unit mass{1, {0, 1}};                          ///< [kg]
+  Unit time{1, {0, 0, 1}};                       ///< [s]
+  Unit velocity{1, {1, 0, -1}};                  ///< [m/s]
+  Unit angular_velocity{1, {0, 0, -1, 1}};       ///< [rad/s]
+  Unit acceleration{1, {1, 0, -2}};              ///< [m/s^2]
+  Unit inertia{1, {2, 1}};                       ///< [kg m^2]
+  Unit density{1, {-3, 1}};                      ///< [kg/m^3]
+  Unit force{1, {1, 1, -2}};                     ///< [N]
+  Unit torque{1, {2, 1, -2}};                    ///< [N m]
+  Unit stiffness{1, {0, 1, -2}};                 ///< [N/m]
+  Unit rotational_stiffness{1, {2, 1, -2, -1}};  ///< [N m/rad]
+  Unit damping{1, {0, 1, -1}};                   ///< [N s/m]
+  Unit rotational_damping{1, {2, 1, -1, -1}};    ///< [N m s/rad]
+
+  /// What numbers without a unit count in.
+  CountingUnits counting() const;
 };
 
 /// Reads a `units` block, as in {length: mm, angle: deg, torque: N mm}; an absent one is SI.
-/// A unit is a product of symbols with powers and at most one '/', as in "kg mm^2" or "N m/deg":
-///   m km cm mm um in ft, rad mrad deg rev, kg g mg t lb, s ms min h, N kN mN lbf, rpm.
+/// A unit is as in ParseUnit: "kg mm^2", "N m/deg".
 Units ReadUnits(const Node& node);
+
+/// Of six numbers along x, y, z and about x, y, z.
+std::array<Unit, 6> SixUnits(const Unit& along, const Unit& about);
 
 /// The length and the angle of the same block, with their symbols.
 DisplayUnits DisplayUnitsOf(const Node& node, const Units& units);

@@ -25,8 +25,8 @@ namespace {
 Units UnitsOf(FileUnits choice) {
   Units units;
   if (choice == FileUnits::kMetresRadians) return units;
-  units.length = 1e-3;
-  units.angle = std::numbers::pi / 180;
+  units.length.factor = 1e-3;
+  units.angle.factor = std::numbers::pi / 180;
   units.inertia = units.mass * units.length * units.length;
   return units;
 }

@@ -24,6 +24,7 @@ MOBILITY = {
     "modelica-four-bar": 1,
     "n-window-four-bar": 1, "puma-560": 6, "redundant-arm": 7, "rssr": 2, "rsup": 1,
     "slider-crank": 1, "spherical-four-bar": 1,
+    "four-bar-by-lengths": 1, "hexapod": 6, "hexapod-leg": 3,
     "square-four-bar": 1, "stewart-gough": 6, "stewart-gough-sps": 12,
     "sundials-slider-crank": 1, "two-link-arm": 2,
 }

@@ -24,7 +24,7 @@ MALFORMED = [
     ("vmech_study", REMOVED), ("vmech_study", 1.0), ("mechanism", REMOVED), ("mechanism", ""),
     ("motion", REMOVED), ("motion", []), ("motion", {"grasp": "handle"}),
     ("motion", {"joint": "main", "rpm": 1500, "speed": 3, "turns": 2, "steps": 720}),
-    ("motion.0.joint", REMOVED), ("motion.0.rpm", "fast"), ("motion.0.rpm", REMOVED),
+    ("motion.0.joint", REMOVED), ("motion.0.rpm", "fast!"), ("motion.0.rpm", REMOVED),
     ("motion.0.turns", 0), ("motion.0.duration", 1), ("motion.0.steps", 0),
     ("motion.0.steps", 7.5), ("motion.0.steps", REMOVED), ("motion.0.repeats", True),
     ("motion.0.speeed", 1), ("motion.1.steps", 720), ("external", {}), ("external.0.link", REMOVED),

@@ -1,4 +1,4 @@
-#include "vmech/mechanisms/files/explain_yaml.h"
+#include "vmech/mechanisms/files/yaml/explain_yaml.h"
 
 #include <gtest/gtest.h>
 

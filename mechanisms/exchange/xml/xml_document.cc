@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "vmech/mechanisms/files/characters.h"
+#include "vmech/mechanisms/files/yaml/characters.h"
 
 namespace vmech {
 namespace {

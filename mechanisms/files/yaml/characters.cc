@@ -1,4 +1,4 @@
-#include "vmech/mechanisms/files/characters.h"
+#include "vmech/mechanisms/files/yaml/characters.h"
 
 #include <fmt/format.h>
 

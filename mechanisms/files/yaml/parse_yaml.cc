@@ -1,4 +1,4 @@
-#include "vmech/mechanisms/files/parse_yaml.h"
+#include "vmech/mechanisms/files/yaml/parse_yaml.h"
 
 #include <fmt/format.h>
 #include <yaml-cpp/eventhandler.h>
@@ -8,9 +8,9 @@
 
 #include <sstream>
 
-#include "vmech/mechanisms/files/characters.h"
-#include "vmech/mechanisms/files/explain_yaml.h"
 #include "vmech/mechanisms/files/file_errors.h"
+#include "vmech/mechanisms/files/yaml/characters.h"
+#include "vmech/mechanisms/files/yaml/explain_yaml.h"
 
 namespace vmech {
 namespace {

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "vmech/mechanisms/files/document_item.h"
+#include "vmech/mechanisms/files/yaml/document_item.h"
 
 namespace vmech {
 
