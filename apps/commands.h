@@ -51,6 +51,7 @@ struct SensitivityArguments {
   std::filesystem::path out;  ///< empty: nothing is written
   int threads = 0;            ///< 0: all processors
   bool quiet = false;
+  std::vector<std::string> set;  ///< parameters, "crank=60"
 };
 int RunSensitivities(const SensitivityArguments& arguments);
 
@@ -65,6 +66,7 @@ struct OptimiseArguments {
   std::filesystem::path out;  ///< empty: nothing is written
   int threads = 0;            ///< 0: all processors
   bool quiet = false;
+  std::vector<std::string> set;  ///< parameters, "crank=60"
 };
 int RunOptimise(const OptimiseArguments& arguments);
 

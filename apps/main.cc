@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "vmech/apps/commands.h"
+#include "vmech/apps/common_options.h"
 #include "vmech/apps/completion.h"
 #include "vmech/apps/console/option_error.h"
 #include "vmech/apps/console/printable_streams.h"
@@ -73,24 +74,6 @@ constexpr const char* kIkHelp =
     "  vmech ik four-bar.yaml --target \"0.9 0.6 0\"\n"
     "  vmech ik arm.yaml --target \"300 0 450  0 90 0\" --grasp handle --start elbow=40";
 
-void AddTolerance(CLI::App* command, std::optional<double>* tolerance) {
-  command
-      ->add_option("--tolerance", *tolerance,
-                   "how far rounded figures may keep loops from closing, in rad and parts of the "
-                   "mechanism's length (default: that of the mechanism file, or 1e-4)")
-      ->check(CLI::Range(0.0, vmech::kWidestTolerance, "0..0.01"))
-      ->type_name("NUMBER");
-}
-
-void AddSet(CLI::App* command, std::vector<std::string>* set) {
-  command
-      ->add_option("--set", *set,
-                   "value of a parameter of the file, a number or an expression; may be given "
-                   "several times")
-      ->allow_extra_args(false)
-      ->type_name("NAME=VALUE");
-}
-
 /// The solvers in braces, as CLI11 shows choices.
 std::string Solvers() {
   std::string names;
@@ -129,8 +112,8 @@ void AddIk(CLI::App* app, vmech::IkArguments* ik) {
   command->add_flag("--paper-rotation", question.paper_rotation,
                     "rotation error of the paper (sine) instead of the angle");
   command->add_flag("--no-limits", question.no_limits, "ignore the limits of joints");
-  AddSet(command, &question.set);
-  AddTolerance(command, &question.tolerance);
+  vmech::AddSet(command, &question.set);
+  vmech::AddTolerance(command, &question.tolerance);
   command->add_flag("--json", ik->json, "print JSON instead of text");
 }
 
@@ -147,8 +130,8 @@ void AddExport(CLI::App* app, vmech::ExportArguments* arguments) {
       ->required()
       ->type_name("FILE");
   command->add_option("--out", arguments->out, "file to write")->required()->type_name("FILE");
-  AddSet(command, &arguments->set);
-  AddTolerance(command, &arguments->tolerance);
+  vmech::AddSet(command, &arguments->set);
+  vmech::AddTolerance(command, &arguments->tolerance);
   command->add_flag("--dh-frames", arguments->dh_frames,
                     "draw every link in its Denavit-Hartenberg frame");
   command->add_flag("--si", arguments->si,
@@ -239,8 +222,8 @@ void AddHaptic(CLI::App* app, vmech::HapticArguments* haptic) {
                    "write every tick to this file while it runs: .mcap, else CSV")
       ->type_name("FILE");
   command->add_flag("--force", haptic->force, "write over an old recording");
-  AddSet(command, &haptic->set);
-  AddTolerance(command, &haptic->tolerance);
+  vmech::AddSet(command, &haptic->set);
+  vmech::AddTolerance(command, &haptic->tolerance);
   command->add_flag("--free", haptic->free_running, "as fast as it computes, in simulated time");
   command->add_flag("-q,--quiet", haptic->quiet, "print nothing but errors");
 }
@@ -265,8 +248,8 @@ void AddView(CLI::App* app, vmech::ViewArguments* view) {
   command->add_option("--port", view->port, "of the page; 0 for any free one")
       ->check(CLI::Range(0, 65535, "0..65535"))
       ->capture_default_str();
-  AddSet(command, &view->set);
-  AddTolerance(command, &view->tolerance);
+  vmech::AddSet(command, &view->set);
+  vmech::AddTolerance(command, &view->tolerance);
 }
 
 constexpr const char* kReplayHelp =
@@ -304,8 +287,8 @@ void AddCheck(CLI::App* app, vmech::CheckArguments* check) {
   command->add_option("MECHANISM", check->mechanisms, "mechanism files, YAML or JSON")
       ->required()
       ->type_name("FILE");
-  AddSet(command, &check->set);
-  AddTolerance(command, &check->tolerance);
+  vmech::AddSet(command, &check->set);
+  vmech::AddTolerance(command, &check->tolerance);
   command->add_flag("--dh", check->dh, "print the Denavit-Hartenberg rows as well");
   command
       ->add_option("--draw", check->draw,
@@ -328,8 +311,8 @@ void AddStudyOptions(CLI::App* command, const char* results, vmech::LoadsArgumen
   command->add_option("--threads", loads->threads, "threads; 0 for all processors")
       ->check(CLI::Range(0, 64, "0..64"))
       ->capture_default_str();
-  AddSet(command, &loads->set);
-  AddTolerance(command, &loads->tolerance);
+  vmech::AddSet(command, &loads->set);
+  vmech::AddTolerance(command, &loads->tolerance);
   command->add_flag("--strict", loads->strict, kStrictHelp);
   command->add_flag("-q,--quiet", loads->quiet, "print nothing but errors");
 }
@@ -346,7 +329,7 @@ void AddCompare(CLI::App* app, vmech::CompareArguments* compare) {
       ->add_option("--out", compare->out,
                    "folder for the results (default: <suite>-compare in this folder)")
       ->type_name("DIR");
-  AddSet(command, &compare->set);
+  vmech::AddSet(command, &compare->set);
   command->add_option("--jobs", compare->jobs, "processes; 0 for one per processor")
       ->check(CLI::Range(0, 256, "0..256"))
       ->capture_default_str();

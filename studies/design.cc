@@ -46,7 +46,6 @@ class DesignProgram final : public NonlinearProgram {
         outcome_(outcome),
         task_(task),
         options_(options) {
-    StartAtFirstPose(outcome, &file_);
     figures_.push_back(task.objective);
     // A smooth peak has a derivative where the pose of the peak changes.
     if (figures_[0].reduction == Reduction::kPeak) figures_[0].reduction = Reduction::kSmoothPeak;
@@ -60,9 +59,8 @@ class DesignProgram final : public NonlinearProgram {
 
   StudyFile At(const VectorXd& x) const {
     StudyFile varied = file_;
-    for (size_t k = 0; k < parameters_.size(); ++k) {
-      parameters_[k].put(x[static_cast<Eigen::Index>(k)], &varied);
-    }
+    PutAll(parameters_, {x.data(), parameters_.size()}, &varied);
+    StartAtFirstPose(outcome_, &varied);
     return varied;
   }
 

@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "vmech/studies/study_reader.h"
+
 namespace vmech {
 namespace {
 
@@ -72,7 +74,7 @@ class Dimensions {
     const auto put = [number, factor](double figure, StudyFile* file) {
       number(&file->study.mechanism) = figure * factor;
     };
-    parameters_.push_back({name, unit, value / factor, scale / factor, put});
+    parameters_.push_back({name, unit, value / factor, scale / factor, put, false});
   }
 
   const Mechanism& mechanism_;
@@ -81,6 +83,30 @@ class Dimensions {
 };
 
 }  // namespace
+
+void PutAll(const std::vector<StudyParameter>& parameters, std::span<const double> values,
+            StudyFile* file) {
+  for (const bool from_file : {true, false}) {
+    for (size_t k = 0; k < parameters.size(); ++k) {
+      if (parameters[k].from_file == from_file) parameters[k].put(values[k], file);
+    }
+  }
+}
+
+std::vector<StudyParameter> FileParametersOf(const StudyFile& file) {
+  std::vector<StudyParameter> parameters;
+  for (const StatedParameter& stated : file.parameters) {
+    const auto put = [name = stated.name, unit = stated.unit](double value, StudyFile* study) {
+      std::vector<ParameterSetting> settings = study->settings;
+      std::erase_if(settings, [&](const ParameterSetting& s) { return s.name == name; });
+      settings.push_back({name, fmt::format("{} {}", value, unit)});
+      *study = ReadStudy(study->path, settings);
+    };
+    const double scale = stated.figure != 0 ? std::abs(stated.figure) : 1;
+    parameters.push_back({stated.name, stated.unit, stated.figure, scale, put, true});
+  }
+  return parameters;
+}
 
 std::vector<StudyParameter> DimensionsOf(const StudyFile& file, bool zeros) {
   return Dimensions(file, zeros).Run();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,16 @@ struct StudyParameter {
   double value = 0;  ///< in the unit
   double scale = 1;  ///< what a change is measured by: the value, or a length of the mechanism
   std::function<void(double value, StudyFile* file)> put;  ///< gives a study this value
+  /// Of a block `parameters`: to put it reads the file anew, with those that were put before.
+  bool from_file = false;
 };
+
+/// Gives a study values, those of its blocks `parameters` first.
+void PutAll(const std::vector<StudyParameter>& parameters, std::span<const double> values,
+            StudyFile* file);
+
+/// Those of the blocks `parameters` of the study and its mechanism.
+std::vector<StudyParameter> FileParametersOf(const StudyFile& file);
 
 /// The numbers of the mechanism itself, in the units of its file: mass and centre of gravity of
 /// every link that has mass, and where its joints are made. Coordinates that are zero are left out

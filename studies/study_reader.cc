@@ -326,6 +326,7 @@ class StudyReader {
   }
 
   void ReadRest(std::span<const ParameterSetting> settings) {
+    file_.settings.assign(settings.begin(), settings.end());
     ParameterTable& table = source_->parameters();
     const std::vector<std::string> of_mechanism = table.names();
     const CountingUnits units = ReadUnits(root_["units"]).counting();

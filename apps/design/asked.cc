@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "vmech/apps/console/option_error.h"
 
@@ -29,10 +30,19 @@ std::optional<std::pair<std::string, std::string>> Split(const std::string& word
 
 }  // namespace
 
+std::vector<StudyParameter> ParametersKnown(const StudyFile& file) {
+  std::vector<StudyParameter> known = FileParametersOf(file);
+  for (StudyParameter& dimension : DimensionsOf(file, true)) known.push_back(std::move(dimension));
+  return known;
+}
+
 std::vector<StudyParameter> ParametersAsked(const StudyFile& file,
                                             const std::vector<std::string>& names) {
-  if (names.empty()) return DimensionsOf(file, false);
-  const std::vector<StudyParameter> known = DimensionsOf(file, true);
+  if (names.empty()) {
+    std::vector<StudyParameter> stated = FileParametersOf(file);
+    return stated.empty() ? DimensionsOf(file, false) : stated;
+  }
+  const std::vector<StudyParameter> known = ParametersKnown(file);
   std::vector<StudyParameter> asked;
   for (const std::string& name : names) asked.push_back(FindParameter(known, name));
   return asked;

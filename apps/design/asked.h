@@ -11,7 +11,9 @@ namespace vmech {
 /// @throws OptionError naming the option, the value and what would do; std::invalid_argument for
 /// names that the study has not.
 
-/// All that are not zero if there are no names.
+/// Those of the file's `parameters`, and all dimensions.
+std::vector<StudyParameter> ParametersKnown(const StudyFile& file);
+/// Without names those of the file's `parameters`, or all dimensions that are not zero.
 std::vector<StudyParameter> ParametersAsked(const StudyFile& file,
                                             const std::vector<std::string>& names);
 /// All if there are no names.

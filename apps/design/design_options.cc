@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "vmech/apps/common_options.h"
+
 namespace vmech {
 namespace {
 
@@ -43,6 +45,7 @@ void AddSensitivities(CLI::App* app, SensitivityArguments* arguments) {
       ->type_name("NAMES");
   command->add_flag("--undetermined", arguments->undetermined,
                     "also of figures that statics does not determine, by the study's rule");
+  AddSet(command, &arguments->set);
   command->add_option("--out", arguments->out, "folder for table and report (default: none)")
       ->type_name("DIR");
   command->add_option("--threads", arguments->threads, "0 for one per processor")
@@ -82,6 +85,7 @@ void AddOptimise(CLI::App* app, OptimiseArguments* arguments) {
       ->capture_default_str();
   command->add_flag("--undetermined", arguments->undetermined,
                     "also by figures that statics does not determine, by the study's rule");
+  AddSet(command, &arguments->set);
   command->add_option("--out", arguments->out, "folder for the design (default: none)")
       ->type_name("DIR");
   command->add_option("--threads", arguments->threads, "0 for one per processor")

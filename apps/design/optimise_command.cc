@@ -11,6 +11,7 @@
 #include "vmech/apps/design/asked.h"
 #include "vmech/apps/design/design_texts.h"
 #include "vmech/apps/files/file_kind.h"
+#include "vmech/apps/files/parameter_options.h"
 #include "vmech/apps/files/result_folder.h"
 #include "vmech/apps/loads/named_study.h"
 #include "vmech/apps/report/report_date.h"
@@ -29,7 +30,7 @@ DesignTask TaskOf(const OptimiseArguments& arguments, const StudyFile& file,
     throw OptionError("optimise: say by what, as --vary crank/pin.x=40..60");
   }
   const std::vector<Figure> figures = FiguresOf(file, outcome);
-  const std::vector<StudyParameter> parameters = DimensionsOf(file, true);
+  const std::vector<StudyParameter> parameters = ParametersKnown(file);
   DesignTask task;
   task.maximise = arguments.minimise.empty();
   task.objective = FindFigure(figures, task.maximise ? arguments.maximise : arguments.minimise);
@@ -57,7 +58,10 @@ void RequireDetermined(const DesignTask& task, const StudyFile& file, const Stud
 }  // namespace
 
 int RunOptimise(const OptimiseArguments& arguments) {
-  const StudyFile file = ReadAs({"optimise", {FileKind::kStudy}}, arguments.study, ReadStudy);
+  const StudyFile file = ReadWithSettings(arguments.set, [&](auto settings) {
+    return ReadAs({"optimise", {FileKind::kStudy}}, arguments.study,
+                  [&](const auto& path) { return ReadStudy(path, settings); });
+  });
   std::optional<ResultFolder> folder;
   if (!arguments.out.empty()) folder.emplace(arguments.out, ResultKind::kDesign);
   DesignOptions options;

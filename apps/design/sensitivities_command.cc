@@ -9,6 +9,7 @@
 #include "vmech/apps/design/sensitivity_report.h"
 #include "vmech/apps/design/sensitivity_texts.h"
 #include "vmech/apps/files/file_kind.h"
+#include "vmech/apps/files/parameter_options.h"
 #include "vmech/apps/files/result_folder.h"
 #include "vmech/apps/loads/named_study.h"
 #include "vmech/apps/report/report_date.h"
@@ -17,7 +18,10 @@
 
 namespace vmech {
 int RunSensitivities(const SensitivityArguments& arguments) {
-  const StudyFile file = ReadAs({"sensitivities", {FileKind::kStudy}}, arguments.study, ReadStudy);
+  const StudyFile file = ReadWithSettings(arguments.set, [&](auto settings) {
+    return ReadAs({"sensitivities", {FileKind::kStudy}}, arguments.study,
+                  [&](const auto& path) { return ReadStudy(path, settings); });
+  });
   std::optional<ResultFolder> folder;
   if (!arguments.out.empty()) folder.emplace(arguments.out, ResultKind::kSensitivities);
   const int threads = arguments.threads > 0

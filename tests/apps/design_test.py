@@ -108,6 +108,46 @@ class Sensitivities(unittest.TestCase):
                     self.assertAlmostEqual(float(row["slope"]) / scale, difference / scale,
                                            delta=2e-8)
 
+    def with_parameters(self, name):
+        """The study with the crank's radius and the piston's mass by parameters."""
+        folder = Folder(name)
+        text = folder.original.replace("pin:  {origin: [50, 0, 0]", "pin:  {origin: [radius, 0, 0]")
+        text = text.replace("    mass: 0.3\n", "    mass: 3 * unit_mass\n")
+        block = "parameters: {radius: 50 mm, unit_mass: 0.1 kg}\n"
+        text = text.replace("links:\n", block + "links:\n", 1)
+        (folder.path / MECHANISM).write_text(text, encoding="utf-8")
+        return folder
+
+    def test_by_parameters_of_the_file_are_those_by_its_numbers(self):
+        folder = self.with_parameters("parameters")
+        done = run("sensitivities", folder.path / STUDY, "--out", folder.path / "by-parameters")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        done = run("sensitivities", EXAMPLES / STUDY, "--by", "crank/pin.x,slider.mass", "--out",
+                   folder.path / "by-numbers")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        parameters = rows(folder.path / "by-parameters" / "sensitivities.csv")
+        numbers = rows(folder.path / "by-numbers" / "sensitivities.csv")
+        self.assertEqual({row["parameter"] for row in parameters}, {"radius", "unit_mass"})
+        self.assertEqual(len(parameters), len(numbers))
+        for by_parameter, by_number in zip(parameters, numbers):
+            self.assertEqual(by_parameter["figure"], by_number["figure"])
+            self.assertAlmostEqual(float(by_parameter["elasticity"]),
+                                   float(by_number["elasticity"]), delta=1e-9)
+
+    def test_designs_by_parameters_of_the_file(self):
+        folder = self.with_parameters("parameters-design")
+        done = run("optimise", folder.path / STUDY, "--minimise", "main.drive", "--vary",
+                   "radius=45..60", "--vary", "coupler.mass=0.2..0.35", "--out",
+                   folder.path / "design")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        table = {row["name"]: row for row in rows(folder.path / "design" / "design.csv")}
+        self.assertAlmostEqual(float(table["radius"]["after"]), 45, delta=1e-6)
+        again = run("sensitivities", folder.path / STUDY, "--set", "radius=45", "--by",
+                    "coupler.mass", "--of", "main.drive", "--out", folder.path / "again")
+        self.assertEqual(again.returncode, 0, again.stderr)
+        value = float(rows(folder.path / "again" / "sensitivities.csv")[0]["value"])
+        self.assertAlmostEqual(value, float(table["main.drive"]["after"]), delta=1e-9 * value)
+
     def test_tells_what_opens_the_loop(self):
         done = run("sensitivities", EXAMPLES / STUDY, "--by", "crank/pin.z,slider.mass")
         self.assertEqual(done.returncode, 0, done.stderr)

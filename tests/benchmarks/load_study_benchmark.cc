@@ -4,7 +4,11 @@
 
 #include "benchmark_studies.h"
 #include "vmech/dynamics/loads/load_study.h"
+#include "vmech/dynamics/loads/prepare_study.h"
 #include "vmech/dynamics/loads/run_load_study.h"
+#include "vmech/dynamics/loads/track_motion.h"
+#include "vmech/dynamics/sensitivity/load_derivatives.h"
+#include "vmech/dynamics/sensitivity/study_change.h"
 
 namespace vmech {
 namespace {
@@ -24,6 +28,31 @@ void SliderCrankPoses(benchmark::State& state) {
   state.SetComplexityN(state.range(0));
 }
 BENCHMARK(SliderCrankPoses)->RangeMultiplier(4)->Range(720, 720 * 64)->Complexity();
+
+/// The derivatives of all loads of the slider-crank, 720 poses, by 20 masses and places.
+void SliderCrankGradient(benchmark::State& state) {
+  const LoadStudy study = SliderCrankStudy(720);
+  const PreparedStudy prepared = PrepareStudy(study);
+  const Motion motion = TrackMotion(study, prepared, LoadStudyOptions().closure_tolerance);
+  std::vector<StudyChange> changes;
+  for (int parameter = 0; parameter < 20; ++parameter) {
+    const auto at = [&](double by) {
+      LoadStudy changed = study;
+      Link& link = changed.mechanism.links[static_cast<size_t>(parameter % 4)];
+      link.mass_properties.mass += by;
+      link.mass_properties.p_LoLcm.x() += by * parameter;
+      for (Anchor& anchor : link.anchors) anchor.X_LA.p.x() += by;
+      return changed;
+    };
+    changes.push_back(ChangeOfStudy(prepared, motion, at, 0, 1e-4));
+  }
+  for (auto _ : state) {
+    for (const StudyChange& change : changes) {
+      benchmark::DoNotOptimize(DifferentiateLoads(prepared, motion, change));
+    }
+  }
+}
+BENCHMARK(SliderCrankGradient)->Unit(benchmark::kMillisecond);
 
 void WindowFourBarPoses(benchmark::State& state) {
   const LoadStudy study = WindowStudy(static_cast<int>(state.range(0)), 720);

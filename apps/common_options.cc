@@ -1,0 +1,27 @@
+#include "vmech/apps/common_options.h"
+
+#include <CLI/CLI.hpp>
+
+#include "vmech/mechanisms/mechanism.h"
+
+namespace vmech {
+
+void AddTolerance(CLI::App* command, std::optional<double>* tolerance) {
+  command
+      ->add_option("--tolerance", *tolerance,
+                   "how far rounded figures may keep loops from closing, in rad and parts of the "
+                   "mechanism's length (default: that of the mechanism file, or 1e-4)")
+      ->check(CLI::Range(0.0, kWidestTolerance, "0..0.01"))
+      ->type_name("NUMBER");
+}
+
+void AddSet(CLI::App* command, std::vector<std::string>* set) {
+  command
+      ->add_option("--set", *set,
+                   "value of a parameter of the file, a number or an expression; may be given "
+                   "several times")
+      ->allow_extra_args(false)
+      ->type_name("NAME=VALUE");
+}
+
+}  // namespace vmech

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace vmech {
+
+/// Options that several commands have.
+
+/// `--tolerance`, within which loops of rounded figures close.
+void AddTolerance(CLI::App* command, std::optional<double>* tolerance);
+/// `--set NAME=VALUE`, parameters of the file.
+void AddSet(CLI::App* command, std::vector<std::string>* set);
+
+}  // namespace vmech
