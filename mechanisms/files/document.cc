@@ -47,14 +47,17 @@ void Document::Report(FileError error) {
   if (error.file == name_ && SlashComment(text_, error.line) > 0) {
     error.message += fmt::format("; {}", kSlashComment);
   }
-  const std::string text = ToString(error);  // a file may be used several times
-  for (const FileError& known : errors_) {
-    if (ToString(known) == text) return;
-  }
   errors_.push_back(std::move(error));
   if (errors_.size() < kMaxErrors) return;
   errors_.push_back({name_, 0, 0, "", "too many errors; stopped here"});
   ThrowErrors();
+}
+
+void Document::ReportOnce(const FileError& error) {
+  const std::string text = ToString(error);
+  const bool known = std::any_of(errors_.begin(), errors_.end(),
+                                 [&](const FileError& e) { return ToString(e) == text; });
+  if (!known) Report(error);
 }
 
 void Document::ThrowErrors() {

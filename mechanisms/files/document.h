@@ -159,6 +159,8 @@ class Document {
 
   /// Adds to what is wrong. @throws FileErrors when that becomes too much to read.
   void Report(FileError error);
+  /// The same unless it is reported already: a file may be used several times.
+  void ReportOnce(const FileError& error);
   bool ok() const { return errors_.empty(); }
   size_t error_count() const { return errors_.size(); }
   void ForgetErrorsAfter(size_t count) { errors_.resize(std::min(count, errors_.size())); }

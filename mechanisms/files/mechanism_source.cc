@@ -167,7 +167,8 @@ MechanismSource::MechanismSource(std::string_view text, const std::string& name,
   users_.push_back(Canonical(name));
   const Node root = document_.root();
   if (root.kind() != Node::Kind::kMap) return;
-  scope_.units = ReadUnits(root["units"]).counting();
+  units_ = ReadUnits(root["units"]);
+  scope_.units = units_.counting();
   ReadParameters(root["parameters"], scope_.units, &table_);
 }
 
@@ -232,7 +233,7 @@ Mechanism MechanismSource::ReadOnce() {
   CheckVersion(root["vmech"]);
   mechanism.name = root["name"].Text(std::filesystem::path(document_.name()).stem().string());
   root["description"].Text();
-  const Units units = ReadUnits(root["units"]);
+  const Units& units = units_;
   mechanism.units = DisplayUnitsOf(root["units"], units);
   ReadTolerance(root["tolerance"], &mechanism);
   mechanism.gravity_W = root["gravity"].Vector3(units.acceleration);
@@ -295,7 +296,7 @@ void MechanismSource::ReadUse(const Node& node, const Units& units, Mechanism* m
     const std::string defect = Insert(part, node.key(), on, X_LU, mechanism);
     if (!defect.empty()) node.KeyError(defect);
   } catch (const FileErrors& errors) {
-    for (const FileError& error : errors.errors()) document_.Report(error);
+    for (const FileError& error : errors.errors()) document_.ReportOnce(error);
   }
   link_nodes_.resize(mechanism->links.size(), node);
 }
@@ -322,7 +323,7 @@ MechanismSource* MechanismSource::SourceOf(const Node& node) {
   } catch (const FileErrors& errors) {
     for (const FileError& error : errors.errors()) {
       if (error.line == 0) node["use"].Error(ToString(error));
-      if (error.line != 0) document_.Report(error);
+      if (error.line != 0) document_.ReportOnce(error);
     }
   }
   return nullptr;

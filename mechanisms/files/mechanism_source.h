@@ -69,6 +69,7 @@ class MechanismSource {
 
   std::string text_;
   Document document_;
+  Units units_;
   ExpressionScope scope_;
   ParameterTable table_;
   std::vector<std::filesystem::path> users_;                      ///< the file itself last

@@ -5,6 +5,10 @@
 
 namespace vmech {
 
+Mechanism ReadMechanism(const std::filesystem::path& path) {
+  return ReadMechanism(path, {});
+}
+
 Mechanism ReadMechanism(const std::filesystem::path& path,
                         std::span<const ParameterSetting> settings) {
   MechanismSource source(ReadTextFile(path), path.string());

@@ -17,8 +17,9 @@ namespace vmech {
 /// of the assembly step, and so is a loop that cannot be closed.
 /// `settings` give parameters of the file other values.
 /// @throws FileErrors with everything that is wrong: what, where, and what to do.
+Mechanism ReadMechanism(const std::filesystem::path& path);
 Mechanism ReadMechanism(const std::filesystem::path& path,
-                        std::span<const ParameterSetting> settings = {});
+                        std::span<const ParameterSetting> settings);
 
 /// The same from a text; `name` stands for the file in messages.
 Mechanism ParseMechanism(std::string_view text, const std::string& name);

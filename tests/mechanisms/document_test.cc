@@ -55,7 +55,7 @@ TEST(Document, AbsentValuesGiveTheFallbackInSilence) {
   EXPECT_FALSE(absent);
   EXPECT_EQ(absent.Number(7), 7);
   EXPECT_EQ(absent.Text("none"), "none");
-  EXPECT_EQ(absent.Vector3({1, 2, 3}), Vector3d(1, 2, 3));
+  EXPECT_EQ(absent.Vector3(Vector3d(1, 2, 3)), Vector3d(1, 2, 3));
   EXPECT_TRUE(absent.List().empty());
   EXPECT_TRUE(document.ok());
 }

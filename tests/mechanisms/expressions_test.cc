@@ -111,8 +111,8 @@ TEST(Expressions, ThatAreMistypedSayWhatIsMissing) {
   EXPECT_EQ(ErrorOf("1 +"), "it ends where a number or a name is wanted");
   EXPECT_EQ(ErrorOf("1, 2"), "a ',' outside of the parentheses of a function");
   EXPECT_EQ(ErrorOf("007"), "a number with a leading zero");
-  EXPECT_NE(ErrorOf(std::string(60, '(') + "1").find("nested too deeply"), std::string::npos);
-  EXPECT_NE(ErrorOf(std::string(60, '-') + "1").find("too many signs"), std::string::npos);
+  EXPECT_NE(ErrorOf(std::string(60, '(')).find("nested too deeply"), std::string::npos);
+  EXPECT_NE(ErrorOf(std::string(60, '-')).find("too many signs"), std::string::npos);
   EXPECT_NE(ErrorOf(std::string(1001, '1')).find("longer than 1000"), std::string::npos);
 }
 
@@ -137,7 +137,7 @@ TEST(Expressions, CarryExactDerivatives) {
         "min(x, 5) + max(x, 1)", "-(x + 1)*(x - 2)", "(x^2 + 1)/(x - 4)"}) {
     const NamedQuantities<Dual> names{{"x", {Dual(1.3, 1), {}, true, false}}};
     const Dual value = FigureIn(Expression(text).Evaluate(names, CountingUnits()), kNone);
-    const double h = 1e-3;
+    const double h = 5e-4;
     const double slope = (8 * (at(text, 1.3 + h) - at(text, 1.3 - h)) -
                           (at(text, 1.3 + 2 * h) - at(text, 1.3 - 2 * h))) /
                          (12 * h);

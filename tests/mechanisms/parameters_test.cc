@@ -100,7 +100,7 @@ TEST(Parameters, OfWhichOneStandsAloneWhereALengthIsAskedAreLengths) {
   std::string text = WithParameters("{crank: 50, rod: 4*crank}");
   text = Replaced(text, "origin: [crank, 0, 0]", "origin: [crank, crank*rod, 0]");
   ExpectError(text,
-              "test.yaml:18:35: links.crank.anchors.pin.origin[1]: 'crank*rod': an area, "
+              "test.yaml:18:30: links.crank.anchors.pin.origin[1]: 'crank*rod': an area, "
               "where a length is asked");
   // A number that stands for a length and for an angle is a number.
   text = WithParameters("{crank: 50, rod: 4*crank}");
@@ -300,7 +300,7 @@ TEST_F(Uses, ThatAreWrongAreNamedWithTheirPlace) {
   wrong("  left: {use: leg.yaml, parameters: {chin: 3}}\n",
         "has no parameter 'chin'; did you mean");
   wrong("  left: {use: leg.yaml, parameters: {shin: 3 kg}}\n",
-        "table.yaml:8:47: mechanisms.left.parameters.shin: a mass, and shin is a length");
+        "table.yaml:8:44: mechanisms.left.parameters.shin: a mass, and shin is a length");
   wrong("  left: {use: leg.yaml, parameters: {shin: -lang}}\n", "did you mean 'long'?");
   wrong("  left: {usse: leg.yaml}\n", "the key 'use' is missing");
   Write("leg.yaml", "vmech: \"1.0\"\ngravity: [0, 0, 0]\nground: a\nlinks: {a: 3}\njoints: {}\n");
@@ -313,7 +313,8 @@ TEST(ExamplesWithParameters, AreTheLinkagesThatTheySay) {
   const std::vector<double> typed = Figures(Example("four-bar"));
   ASSERT_EQ(by_lengths.size(), typed.size());
   for (size_t i = 0; i < typed.size(); ++i) {
-    if (std::isfinite(typed[i])) EXPECT_NEAR(by_lengths[i], typed[i], 1e-15) << i;
+    if (std::isinf(typed[i])) continue;  // a limit that there is not
+    EXPECT_NEAR(by_lengths[i], typed[i], 1e-15) << i;
   }
   // The hexapod's legs are as long as those of the platform with its numbers typed in.
   const Mechanism hexapod = Example("hexapod"), platform = Example("stewart-gough");
