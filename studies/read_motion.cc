@@ -173,7 +173,7 @@ Posed HandPose(const Node& node, const CsvTable& table, const Units& units, size
     return column ? (*column)[row] : 0;
   };
   Posed X_WH;
-  X_WH.p = units.length * Vector3d(value("x"), value("y"), value("z"));
+  X_WH.p = units.length.factor * Vector3d(value("x"), value("y"), value("z"));
   if (!table.Find("qw")) return X_WH;
   const Eigen::Quaterniond q(value("qw"), value("qx"), value("qy"), value("qz"));
   if (std::abs(q.norm() - 1) > 1e-3) {

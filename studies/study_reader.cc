@@ -33,7 +33,7 @@ Wrenchd WrenchOfRow(const CsvTable& table, const Units& units, size_t row) {
   for (int i = 0; i < 6; ++i) {
     if (const std::vector<double>* column = table.Find(kComponents[i])) w[i] = (*column)[row];
   }
-  return {units.force * w.head<3>(), units.torque * w.tail<3>()};
+  return {units.force.factor * w.head<3>(), units.torque.factor * w.tail<3>()};
 }
 
 /// A table over the angle of a drive repeats if it fills whole turns: its last row is a whole
