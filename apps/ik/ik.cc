@@ -185,9 +185,9 @@ Posed ReadTarget(const std::string& text, const Units& units, const Posed& X_WG_
         "rz\" or with a quaternion \"x y z qw qx qy qz\"",
         n.size()));
   }
-  Posed X_WH{X_WG_start.R, units.length * Vector3d(n[0], n[1], n[2])};
+  Posed X_WH{X_WG_start.R, units.length.factor * Vector3d(n[0], n[1], n[2])};
   if (n.size() == 6) {
-    const Vector3d turn = units.angle * Vector3d(n[3], n[4], n[5]);
+    const Vector3d turn = units.angle.factor * Vector3d(n[3], n[4], n[5]);
     const Vector3d axis = turn.norm() > 0 ? turn.normalized() : Vector3d::UnitZ();
     X_WH.R = Eigen::AngleAxisd(turn.norm(), axis).toRotationMatrix();
   } else if (n.size() == 7) {

@@ -9,16 +9,16 @@ namespace vmech::c {
 namespace {
 
 // The order of the two is one.
-static_assert(static_cast<int>(Quantity::kTimes) == VMECH_TIMES);
-static_assert(static_cast<int>(Quantity::kLinkPositions) == VMECH_LINK_POSITIONS);
-static_assert(static_cast<int>(Quantity::kPeaks) == VMECH_PEAKS);
+static_assert(static_cast<int>(ArrayKind::kTimes) == VMECH_TIMES);
+static_assert(static_cast<int>(ArrayKind::kLinkPositions) == VMECH_LINK_POSITIONS);
+static_assert(static_cast<int>(ArrayKind::kPeaks) == VMECH_PEAKS);
 static_assert(kQuantities.size() == VMECH_PEAKS + 1);
 static_assert(static_cast<int>(Certainty::kSingular) == VMECH_SINGULAR);
 
 /// Without data where there is no such quantity.
 NumberArray ArrayOf(const vmech_result* result, vmech_quantity quantity) {
   if (result == nullptr || quantity < VMECH_TIMES || quantity > VMECH_PEAKS) return {};
-  return result->computed.Array(static_cast<Quantity>(quantity));
+  return result->computed.Array(static_cast<ArrayKind>(quantity));
 }
 
 /// A result has numbers, all or, where it stopped early, some.

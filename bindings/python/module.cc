@@ -322,7 +322,7 @@ void BindComputed(py::module_* module) {
       .def("array",
            [](const py::object& self, const std::string& name) {
              const auto& computed = self.cast<const Computed&>();
-             for (const QuantityName& known : kQuantities) {
+             for (const ArrayKindName& known : kQuantities) {
                if (known.name == name) return ViewOf(computed.Array(known.quantity), self);
              }
              throw std::invalid_argument("there is no array of the name " + Quoted(name));

@@ -55,7 +55,7 @@ size_t Computed::pose_count() const {
   return list_.poses > 0 ? list_.poses : outcome_.loads.poses.size();
 }
 
-NumberArray Computed::Array(Quantity quantity) const {
+NumberArray Computed::Array(ArrayKind quantity) const {
   NumberArray array;
   if (list_.poses > 0) {
     array = OfList(quantity);
@@ -67,32 +67,32 @@ NumberArray Computed::Array(Quantity quantity) const {
   return array.data == nullptr ? NumberArray() : array;
 }
 
-NumberArray Computed::OfLoads(Quantity quantity) const {
+NumberArray Computed::OfLoads(ArrayKind quantity) const {
   const LoadArrays& a = outcome_.loads.poses.arrays();
   const size_t poses = a.pose_count();
   switch (quantity) {
-    case Quantity::kTimes:
+    case ArrayKind::kTimes:
       return Dense(a.times.data(), {poses});
-    case Quantity::kWrenches:
+    case ArrayKind::kWrenches:
       return Dense(a.wrenches.data(), {poses, a.joint_count(), 6});
-    case Quantity::kPositions:
+    case ArrayKind::kPositions:
       return Dense(a.positions.data(), {poses, a.freedom_count()});
-    case Quantity::kRates:
+    case ArrayKind::kRates:
       return Dense(a.rates.data(), {poses, a.freedom_count()});
-    case Quantity::kAccelerations:
+    case ArrayKind::kAccelerations:
       return Dense(a.accelerations.data(), {poses, a.freedom_count()});
-    case Quantity::kDriveMotions:
+    case ArrayKind::kDriveMotions:
       if (a.drives.empty()) return {};
       return Dense(&a.drives[0].position, {poses, a.drive_count, 3});
-    case Quantity::kDriveForces:
+    case ArrayKind::kDriveForces:
       return Dense(a.drive_forces.data(), {poses, a.drive_count});
-    case Quantity::kPowers:
+    case ArrayKind::kPowers:
       return Dense(a.powers.data(), {poses});
-    case Quantity::kPowerErrors:
+    case ArrayKind::kPowerErrors:
       return Dense(a.power_errors.data(), {poses});
-    case Quantity::kClosures:
+    case ArrayKind::kClosures:
       return Dense(a.closures.data(), {poses});
-    case Quantity::kPeaks:
+    case ArrayKind::kPeaks:
       if (peaks_.components.empty()) return {};
       return Dense(peaks_.components[0].data(), {peaks_.components.size(), 6});
     default:
@@ -100,7 +100,7 @@ NumberArray Computed::OfLoads(Quantity quantity) const {
   }
 }
 
-NumberArray Computed::OfLinks(Quantity quantity) const {
+NumberArray Computed::OfLinks(ArrayKind quantity) const {
   const LoadArrays& a = outcome_.loads.poses.arrays();
   const size_t poses = a.pose_count();
   if (a.links.empty()) return {};
@@ -108,16 +108,16 @@ NumberArray Computed::OfLinks(Quantity quantity) const {
   const auto field = [&](const double* data, std::initializer_list<size_t> shape) {
     return OfEveryLink(data, poses, a.link_count, sizeof(LinkMotion), shape);
   };
-  if (quantity == Quantity::kLinkPositions) return field(first.X_WL.p.data(), {3});
-  if (quantity == Quantity::kLinkRotations) return field(first.X_WL.R.data(), {3, 3});
-  if (quantity == Quantity::kLinkTwists) return field(first.v.data(), {6});
+  if (quantity == ArrayKind::kLinkPositions) return field(first.X_WL.p.data(), {3});
+  if (quantity == ArrayKind::kLinkRotations) return field(first.X_WL.R.data(), {3, 3});
+  if (quantity == ArrayKind::kLinkTwists) return field(first.v.data(), {6});
   return {};
 }
 
-NumberArray Computed::OfSimulation(Quantity quantity) const {
+NumberArray Computed::OfSimulation(ArrayKind quantity) const {
   const LoadArrays& a = outcome_.loads.poses.arrays();
   const SimulationResult* simulation = outcome_.simulation ? &*outcome_.simulation : nullptr;
-  if (quantity == Quantity::kHandWrenches) {
+  if (quantity == ArrayKind::kHandWrenches) {
     if (!a.hands.empty()) {
       const double* data = a.hands[0].wrench.force.data();
       return Field(data, a.hands.size(), sizeof(HandLoad), 6);
@@ -127,23 +127,23 @@ NumberArray Computed::OfSimulation(Quantity quantity) const {
   }
   if (simulation == nullptr || simulation->energies.empty()) return {};
   const size_t poses = simulation->energies.size();
-  if (quantity == Quantity::kEnergies) return Dense(&simulation->energies[0].kinetic, {poses, 6});
+  if (quantity == ArrayKind::kEnergies) return Dense(&simulation->energies[0].kinetic, {poses, 6});
   const std::vector<double>& motors = simulation->motor_forces;
-  if (quantity == Quantity::kMotorForces)
+  if (quantity == ArrayKind::kMotorForces)
     return Dense(motors.data(), {poses, motors.size() / poses});
   return {};
 }
 
-NumberArray Computed::OfList(Quantity quantity) const {
+NumberArray Computed::OfList(ArrayKind quantity) const {
   const size_t poses = list_.poses;
   switch (quantity) {
-    case Quantity::kPositions:
+    case ArrayKind::kPositions:
       return Dense(list_.positions.data(), {poses, list_.positions.size() / poses});
-    case Quantity::kHandErrors:
+    case ArrayKind::kHandErrors:
       return list_.errors.empty() ? NumberArray() : Dense(list_.errors[0].data(), {poses, 6});
-    case Quantity::kLinkPositions:
+    case ArrayKind::kLinkPositions:
       return OfEveryLink(list_.links[0].p.data(), poses, list_.link_count, sizeof(Posed), {3});
-    case Quantity::kLinkRotations:
+    case ArrayKind::kLinkRotations:
       return OfEveryLink(list_.links[0].R.data(), poses, list_.link_count, sizeof(Posed), {3, 3});
     default:
       return {};

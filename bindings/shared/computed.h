@@ -15,7 +15,7 @@
 namespace vmech {
 
 /// What can be read of a computation, one array each; SI units and radians.
-enum class Quantity {
+enum class ArrayKind {
   kTimes,          ///< [poses] [s]
   kWrenches,       ///< [poses, joints, 6] as JointSample [N], [N m]
   kPositions,      ///< [poses, freedoms] coordinates [m] or [rad]
@@ -36,30 +36,30 @@ enum class Quantity {
   kPeaks,          ///< [joints, 6] the largest size of every component
 };
 
-struct QuantityName {
-  Quantity quantity;
+struct ArrayKindName {
+  ArrayKind quantity;
   std::string_view name;
 };
 
 inline constexpr std::array kQuantities = {
-    QuantityName{Quantity::kTimes, "times"},
-    QuantityName{Quantity::kWrenches, "wrenches"},
-    QuantityName{Quantity::kPositions, "positions"},
-    QuantityName{Quantity::kRates, "rates"},
-    QuantityName{Quantity::kAccelerations, "accelerations"},
-    QuantityName{Quantity::kDriveMotions, "drive_motions"},
-    QuantityName{Quantity::kDriveForces, "drive_forces"},
-    QuantityName{Quantity::kPowers, "powers"},
-    QuantityName{Quantity::kPowerErrors, "power_errors"},
-    QuantityName{Quantity::kClosures, "closures"},
-    QuantityName{Quantity::kLinkPositions, "link_positions"},
-    QuantityName{Quantity::kLinkRotations, "link_rotations"},
-    QuantityName{Quantity::kLinkTwists, "link_twists"},
-    QuantityName{Quantity::kHandWrenches, "hand_wrenches"},
-    QuantityName{Quantity::kHandErrors, "hand_errors"},
-    QuantityName{Quantity::kEnergies, "energies"},
-    QuantityName{Quantity::kMotorForces, "motor_forces"},
-    QuantityName{Quantity::kPeaks, "peaks"},
+    ArrayKindName{ArrayKind::kTimes, "times"},
+    ArrayKindName{ArrayKind::kWrenches, "wrenches"},
+    ArrayKindName{ArrayKind::kPositions, "positions"},
+    ArrayKindName{ArrayKind::kRates, "rates"},
+    ArrayKindName{ArrayKind::kAccelerations, "accelerations"},
+    ArrayKindName{ArrayKind::kDriveMotions, "drive_motions"},
+    ArrayKindName{ArrayKind::kDriveForces, "drive_forces"},
+    ArrayKindName{ArrayKind::kPowers, "powers"},
+    ArrayKindName{ArrayKind::kPowerErrors, "power_errors"},
+    ArrayKindName{ArrayKind::kClosures, "closures"},
+    ArrayKindName{ArrayKind::kLinkPositions, "link_positions"},
+    ArrayKindName{ArrayKind::kLinkRotations, "link_rotations"},
+    ArrayKindName{ArrayKind::kLinkTwists, "link_twists"},
+    ArrayKindName{ArrayKind::kHandWrenches, "hand_wrenches"},
+    ArrayKindName{ArrayKind::kHandErrors, "hand_errors"},
+    ArrayKindName{ArrayKind::kEnergies, "energies"},
+    ArrayKindName{ArrayKind::kMotorForces, "motor_forces"},
+    ArrayKindName{ArrayKind::kPeaks, "peaks"},
 };
 
 /// Closed poses of a mechanism, without time.
@@ -80,7 +80,7 @@ class Computed {
 
   /// Lives as long as this. Rank 0 and no data where there is no such array, such as the wrenches
   /// of a list of poses.
-  NumberArray Array(Quantity quantity) const;
+  NumberArray Array(ArrayKind quantity) const;
   size_t pose_count() const;
   const StudyOutcome& outcome() const { return outcome_; }
   /// Verdicts on the joints' wrenches.
@@ -89,10 +89,10 @@ class Computed {
   void Warn(std::string warning) { outcome_.warnings.push_back(std::move(warning)); }
 
  private:
-  NumberArray OfLoads(Quantity quantity) const;
-  NumberArray OfLinks(Quantity quantity) const;
-  NumberArray OfSimulation(Quantity quantity) const;
-  NumberArray OfList(Quantity quantity) const;
+  NumberArray OfLoads(ArrayKind quantity) const;
+  NumberArray OfLinks(ArrayKind quantity) const;
+  NumberArray OfSimulation(ArrayKind quantity) const;
+  NumberArray OfList(ArrayKind quantity) const;
 
   StudyOutcome outcome_;
   LoadPeaks peaks_;
