@@ -35,12 +35,20 @@ struct LoadsArguments {
   std::filesystem::path out;        ///< empty: "<study>-loads" in the current folder
   std::optional<double> tolerance;  ///< instead of the mechanism's own
   bool quiet = false;
-  int threads = 0;      ///< 0: all processors
-  bool strict = false;  ///< warnings are errors: nothing is written
+  int threads = 0;               ///< 0: all processors
+  bool strict = false;           ///< warnings are errors: nothing is written
+  std::filesystem::path motion;  ///< a result folder, whose motion is taken; empty: the study's own
 };
 int RunLoads(const LoadsArguments& arguments);
 /// Of a study with a simulation; the default folder is "<study>-simulate".
 int RunSimulate(const LoadsArguments& arguments);
+
+struct ModesArguments {
+  std::filesystem::path file;       ///< mechanism, or study with a simulation
+  std::filesystem::path out;        ///< for tables and studies; empty: they are not written
+  std::optional<double> tolerance;  ///< instead of the mechanism's own
+};
+int RunModes(const ModesArguments& arguments);
 
 struct CompareArguments {
   std::filesystem::path suite;
