@@ -39,6 +39,7 @@ struct LoadsArguments {
   int threads = 0;               ///< 0: all processors
   bool strict = false;           ///< warnings are errors: nothing is written
   std::vector<std::string> set;  ///< parameters, "crank=60"
+  std::filesystem::path motion;  ///< a result folder, whose motion is taken; empty: the study's own
 };
 int RunLoads(const LoadsArguments& arguments);
 /// Of a study with a simulation; the default folder is "<study>-simulate".
@@ -69,6 +70,13 @@ struct OptimiseArguments {
   std::vector<std::string> set;  ///< parameters, "crank=60"
 };
 int RunOptimise(const OptimiseArguments& arguments);
+struct ModesArguments {
+  std::filesystem::path file;       ///< mechanism, or study with a simulation
+  std::filesystem::path out;        ///< for tables and studies; empty: they are not written
+  std::optional<double> tolerance;  ///< instead of the mechanism's own
+  std::vector<std::string> set;     ///< parameters, "crank=60"
+};
+int RunModes(const ModesArguments& arguments);
 
 struct CompareArguments {
   std::filesystem::path suite;

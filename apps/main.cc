@@ -317,6 +317,34 @@ void AddStudyOptions(CLI::App* command, const char* results, vmech::LoadsArgumen
   command->add_flag("-q,--quiet", loads->quiet, "print nothing but errors");
 }
 
+void AddLoads(CLI::App* app, vmech::LoadsArguments* loads) {
+  CLI::App* command = app->add_subcommand("loads", kLoadsHelp);
+  AddStudyOptions(command, "loads", loads);
+  command
+      ->add_option("--motion", loads->motion,
+                   "result folder of vmech simulate or vmech loads, whose motion is taken in place "
+                   "of the study's own")
+      ->type_name("DIR");
+}
+
+constexpr const char* kModesHelp =
+    "Finds where a mechanism rests under weight, springs, motors and loads, downhill from its\n"
+    "start, and says whether it stays there, how fast it swings about it, how that is damped, and\n"
+    "in which shapes. Dry friction and limits are left out.";
+
+void AddModes(CLI::App* app, vmech::ModesArguments* modes) {
+  CLI::App* command = app->add_subcommand("modes", kModesHelp);
+  command->add_option("FILE", modes->file, "mechanism, or study with a block `simulation`")
+      ->required()
+      ->type_name("FILE");
+  command
+      ->add_option("--out", modes->out,
+                   "folder for modes.csv, and for a study of each mode, which vmech view plays")
+      ->type_name("DIR");
+  vmech::AddSet(command, &modes->set);
+  vmech::AddTolerance(command, &modes->tolerance);
+}
+
 void AddCompare(CLI::App* app, vmech::CompareArguments* compare) {
   CLI::App* command = app->add_subcommand("compare", kCompareHelp);
   command->add_option("SUITE", compare->suite, "suite file, YAML or JSON")
@@ -342,6 +370,7 @@ struct Arguments {
   vmech::LoadsArguments loads, simulated;
   vmech::SensitivityArguments sensitivities;
   vmech::OptimiseArguments optimise;
+  vmech::ModesArguments modes;
   vmech::CompareArguments compare;
   vmech::IkArguments ik;
   vmech::HapticArguments haptic;
@@ -358,11 +387,12 @@ constexpr const char* kCompletionHelp =
 
 void AddCommands(CLI::App* app, Arguments* arguments) {
   AddCheck(app, &arguments->check);
-  AddStudyOptions(app->add_subcommand("loads", kLoadsHelp), "loads", &arguments->loads);
+  AddLoads(app, &arguments->loads);
   AddStudyOptions(app->add_subcommand("simulate", kSimulateHelp), "simulate",
                   &arguments->simulated);
   vmech::AddSensitivities(app, &arguments->sensitivities);
   vmech::AddOptimise(app, &arguments->optimise);
+  AddModes(app, &arguments->modes);
   AddCompare(app, &arguments->compare);
   app->add_subcommand("import",
                       "Makes a mechanism file of a CAD assembly, SDFormat or URDF; see `vmech "
@@ -391,6 +421,7 @@ int RunCommand(const CLI::App& app, const Arguments& arguments) {
   if (app.got_subcommand("simulate")) return RunSimulate(arguments.simulated);
   if (app.got_subcommand("sensitivities")) return RunSensitivities(arguments.sensitivities);
   if (app.got_subcommand("optimise")) return RunOptimise(arguments.optimise);
+  if (app.got_subcommand("modes")) return RunModes(arguments.modes);
   if (app.got_subcommand("ik")) return RunIk(arguments.ik);
   if (app.got_subcommand("haptic")) return RunHaptic(arguments.haptic);
   if (app.got_subcommand("replay")) return RunReplay(arguments.replay);

@@ -10,6 +10,7 @@
 #include "vmech/dynamics/loads/load_result.h"
 #include "vmech/dynamics/loads/open_components.h"
 #include "vmech/dynamics/loads/run_load_study.h"
+#include "vmech/dynamics/simulation/motion_loads.h"
 #include "vmech/dynamics/simulation/simulate.h"
 
 namespace vmech {
@@ -39,19 +40,6 @@ LoadCertainty CertaintyOfLoads(const JointCertainty& certainty) {
   const bool certain = std::all_of(certainty.begin(), certainty.begin() + 5,
                                    [](Certainty c) { return c == Certainty::kCertain; });
   return certain ? LoadCertainty::kCertain : LoadCertainty::kDependsOnRule;
-}
-
-/// The request with what the study says of it elsewhere.
-Simulation SimulationOf(const StudyFile& file) {
-  Simulation simulation = file.simulation->simulation;
-  simulation.mechanism = file.study.mechanism;
-  simulation.drives = file.study.drives;
-  simulation.external = file.study.external;
-  simulation.times = file.study.times;
-  simulation.rule = file.study.rule;
-  simulation.norm_length = file.study.norm_length;
-  simulation.units = file.study.units;
-  return simulation;
 }
 
 void RunSimulation(const StudyFile& file, const LoadStudyOptions& options, StudyOutcome* outcome) {
@@ -87,9 +75,23 @@ int TurnAboutAxis(JointType type) {
   }
 }
 
+Simulation SimulationOf(const StudyFile& file) {
+  Simulation simulation = file.simulation ? file.simulation->simulation : Simulation();
+  simulation.mechanism = file.study.mechanism;
+  simulation.drives = file.study.drives;
+  simulation.external = file.study.external;
+  simulation.times = file.study.times;
+  simulation.rule = file.study.rule;
+  simulation.norm_length = file.study.norm_length;
+  simulation.units = file.study.units;
+  return simulation;
+}
+
 StudyOutcome RunStudy(const StudyFile& file, const LoadStudyOptions& options) {
   StudyOutcome outcome;
-  if (file.simulation) {
+  if (file.history) {
+    outcome.loads = EvaluateMotionLoads(SimulationOf(file), *file.history, options.progress);
+  } else if (file.simulation) {
     RunSimulation(file, options, &outcome);
   } else {
     outcome.loads = RunLoadStudy(file.study, options);

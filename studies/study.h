@@ -9,6 +9,7 @@
 #include "vmech/dynamics/bearings/joint_bearings.h"
 #include "vmech/dynamics/loads/load_result.h"
 #include "vmech/dynamics/loads/load_study.h"
+#include "vmech/dynamics/simulation/motion_loads.h"
 #include "vmech/dynamics/simulation/simulation.h"
 #include "vmech/dynamics/simulation/simulation_result.h"
 #include "vmech/mechanisms/files/mechanism_source.h"
@@ -44,6 +45,8 @@ struct StudyFile {
   std::string motion;  ///< the motion in words: "main at 1500 rpm, 2 turns"
   LoadStudy study;
   std::optional<SimulationRequest> simulation;  ///< instead of a motion
+  /// A motion that was computed before, instead of its own. What acts is what the study says.
+  std::optional<JointHistory> history;
   std::vector<BearingRequest> bearings;
   std::vector<Bearing> catalogue;                ///< the built-in one unless the file names another
   std::vector<StatedParameter> parameters = {};  ///< of the mechanism and the study
@@ -69,8 +72,12 @@ struct StudyOutcome {
   std::vector<std::string> warnings;           ///< of loads and bearings together
 };
 
-/// Runs the loads, or the simulation, and chooses the bearings. Of the options a simulation takes
-/// the progress, in poses.
+/// What a study simulates: its request, or none of it where there is none, with what the study says
+/// of it elsewhere.
+Simulation SimulationOf(const StudyFile& file);
+
+/// Runs the loads, of its motion or of its history, or the simulation, and chooses the bearings. Of
+/// the options a simulation takes the progress, in poses.
 /// @throws as RunLoadStudy and Simulate; std::invalid_argument for bearings at a joint that cannot
 /// have them.
 StudyOutcome RunStudy(const StudyFile& file, const LoadStudyOptions& options);

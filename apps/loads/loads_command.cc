@@ -16,6 +16,7 @@
 #include "vmech/apps/files/result_folder.h"
 #include "vmech/apps/loads/named_study.h"
 #include "vmech/apps/loads/printed_summary.h"
+#include "vmech/apps/loads/simulated_motion.h"
 #include "vmech/apps/loads/study_results.h"
 #include "vmech/mechanisms/files/file_errors.h"
 #include "vmech/studies/study.h"
@@ -51,10 +52,11 @@ StudyFile ReadFor(const char* command, const LoadsArguments& arguments) {
                   [&](const auto& path) { return ReadStudy(path, settings); });
   });
   const bool simulates = std::string_view(command) == "simulate";
-  if (simulates != file.simulation.has_value()) {
+  if (arguments.motion.empty() && simulates != file.simulation.has_value()) {
     throw FileErrors(arguments.study.string(),
                      simulates ? "has no block `simulation`; `vmech loads` runs its motion"
-                               : "is to be simulated; `vmech simulate` does that");
+                               : "is to be simulated; `vmech simulate` does that, and --motion "
+                                 "takes what came of it");
   }
   if (arguments.tolerance) file.study.mechanism.tolerance = *arguments.tolerance;
   return file;
@@ -88,10 +90,17 @@ void Deliver(const StudyFile& file, const StudyOutcome& outcome, const LoadsArgu
 }  // namespace
 
 int RunLoads(const LoadsArguments& arguments) {
-  const StudyFile file = ReadFor("loads", arguments);
+  StudyFile file = ReadFor("loads", arguments);
+  std::string unfinished;
+  if (!arguments.motion.empty()) unfinished = TakeMotionOf(arguments.motion, &file);
   ResultFolder folder(FolderFor("loads", arguments), ResultKind::kLoads);
   const StudyOutcome outcome = RunWithBar("loads", file, arguments);
   Deliver(file, outcome, arguments, &folder);
+  if (!unfinished.empty()) {
+    fmt::print(stderr, "{}: a partial motion, of a simulation that is {}\n",
+               arguments.motion.string(), unfinished);
+    return kNoSolution;
+  }
   return BearingsMet(outcome) ? kSuccess : kNotMet;
 }
 

@@ -143,6 +143,7 @@ std::string SummaryJson(const StudyFile& file, const StudyOutcome& outcome) {
   const LoadStudyResult& loads = outcome.loads;
   Json json{{"study", file.name},
             {"mechanism", file.study.mechanism.name},
+            {"mechanism_sha256", DigestOfMechanism(file)},
             {"motion", file.motion},
             {"rule", NameOf(file.study.rule)},
             {"norm_length", loads.norm_length},

@@ -184,6 +184,13 @@ std::string CertaintyTable(const StudyFile& file, const LoadStudyResult& result)
   return text;
 }
 
+std::string DigestOfMechanism(const StudyFile& file) {
+  for (const InputFile& input : file.inputs) {
+    if (input.path == file.mechanism_path) return input.sha256;
+  }
+  return "";
+}
+
 std::string BearingsTable(const StudyFile& file, const StudyOutcome& outcome) {
   std::string text =
       "joint,position,designation,fits,bore,outer_diameter,width,C,C0,mean_load,peak_load,"

@@ -32,6 +32,9 @@ std::string CertaintyTable(const StudyFile& file, const LoadStudyResult& result)
 /// One line per bearing position.
 std::string BearingsTable(const StudyFile& file, const StudyOutcome& outcome);
 
+/// The SHA-256 of the mechanism file as it was read.
+std::string DigestOfMechanism(const StudyFile& file);
+
 /// Everything that a program would ask of a study, except the tables: summary.json.
 std::string SummaryJson(const StudyFile& file, const StudyOutcome& outcome);
 

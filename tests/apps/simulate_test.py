@@ -43,6 +43,26 @@ def wait_until_caught(pid, number):
         time.sleep(0.02)
 
 
+BEARINGS = """
+bearings: {main: {positions: [-10, 10], shaft: [8, 20], life_hours: 100}}
+"""
+
+
+def numbers(path):
+    with path.open(newline="", encoding="utf-8") as file:
+        return [[float(value) for value in row] for row in list(csv.reader(file))[1:]]
+
+
+def rounded(text):
+    """A table with nine digits of its numbers."""
+    def cell(value):
+        try:
+            return f"{float(value):.9g}"
+        except ValueError:
+            return value
+    return [[cell(value) for value in row] for row in csv.reader(text.splitlines())]
+
+
 class Simulate(unittest.TestCase):
     def setUp(self):
         shutil.rmtree(FOLDER, ignore_errors=True)
@@ -91,6 +111,126 @@ class Simulate(unittest.TestCase):
             self.assertAlmostEqual(float(row["total"]), total, delta=1e-6)
         report = (FOLDER / "out" / "report.html").read_text(encoding="utf-8")
         self.assertIn("The simulation", report)
+
+    def run_motion(self, *arguments):
+        return self.vmech("loads", *arguments, "--out", "loads")
+
+    def test_the_loads_of_a_simulated_motion_are_those_of_the_simulation(self):
+        study = FOLDER / "study.yaml"
+        study.write_text(SWINGING.read_text(encoding="utf-8").replace(
+            "mechanism: ../../mechanisms/examples/", f"mechanism: {EXAMPLES}/") + BEARINGS)
+        run = self.vmech("simulate", study, "--out", "out")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        run = self.run_motion(study, "--motion", "out")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        for name in ("loads.csv", "motion.csv", "joints.csv"):
+            first, second = (numbers(FOLDER / folder / name) for folder in ("out", "loads"))
+            self.assertEqual(len(first), len(second))
+            size = max(abs(value) for row in first for value in row)
+            for expected, row in zip(first, second):
+                for a, b in zip(expected, row):
+                    self.assertAlmostEqual(a, b, delta=1e-12 * size)
+        for name in ("certainty.csv", "bearings.csv"):
+            first, second = ((FOLDER / folder / name).read_text(encoding="utf-8")
+                             for folder in ("out", "loads"))
+            self.assertEqual(rounded(first), rounded(second))
+
+    def test_a_motion_that_does_not_fit_is_told_by_name(self):
+        study = self.study("{duration: 1, steps: 20}", start=-1)
+        self.assertEqual(self.vmech("simulate", study, "--out", "out").returncode, 0)
+        joints, summary = FOLDER / "out" / "joints.csv", FOLDER / "out" / "summary.json"
+        kept = joints.read_text(encoding="utf-8"), summary.read_text(encoding="utf-8")
+        pushed = "external: [{link: rod, force: [1, 0, 0]}]\n"
+        for change, words in (
+                (lambda: joints.unlink(), "out: has no joints.csv"),
+                (lambda: joints.write_text(kept[0].replace("pivot.rate", "pivot.speed")),
+                 "the column 'pivot.rate' is missing"),
+                (lambda: joints.write_text(kept[0].rsplit("\n", 2)[0] + "\n"),
+                 "has 20 rows, but summary.json beside it tells of 21 poses"),
+                (lambda: summary.write_text(kept[1].replace("mechanism_sha256", "old")),
+                 "does not say of which mechanism file it is"),
+                (lambda: self.study("{duration: 1}", start=-1.1),
+                 "out: is a motion of another mechanism: 'pendulum'"),
+                (lambda: self.study("{duration: 1}", start=-1, extra=pushed),
+                 "study.yaml: what the study names does not give this motion: at t ="),
+        ):
+            change()
+            run = self.run_motion(study, "--motion", "out")
+            self.assertEqual(run.returncode, 2, run.stdout)
+            self.assertIn(words, run.stderr)
+            self.assertFalse((FOLDER / "loads").exists())
+            joints.write_text(kept[0])
+            summary.write_text(kept[1])
+        self.study("{duration: 1}", start=-1)
+        summary.write_text(kept[1].replace('"finished"', '"interrupted"'))
+        run = self.run_motion(study, "--motion", "out")
+        self.assertEqual(run.returncode, 3, run.stderr)
+        self.assertIn("out: a partial motion, of a simulation that is interrupted", run.stderr)
+        self.assertTrue((FOLDER / "loads" / "loads.csv").exists())
+
+    def test_a_motor_of_a_load_study_moves_as_a_result_does(self):
+        study = self.study("{duration: 1, steps: 20, motors: [{joint: pivot, force: 3}]}", start=-1)
+        self.assertEqual(self.vmech("simulate", study, "--out", "out").returncode, 0)
+        study.write_text('vmech_study: "1.0"\nmechanism: pendulum.yaml\n'
+                         "motion: {joint: pivot, rpm: 1, turns: 1, steps: 4}\n")
+        run = self.run_motion(study, "--motion", "out")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        with (FOLDER / "loads" / "loads.csv").open(newline="", encoding="utf-8") as file:
+            forces = [float(row["drive.force"]) for row in csv.DictReader(file)]
+        self.assertEqual(len(forces), 21)
+        for force in forces:
+            self.assertAlmostEqual(force, 3, delta=1e-12)
+
+    def modes_of(self, start, text=PENDULUM, arguments=()):
+        path = FOLDER / "pendulum.yaml"
+        path.write_text(text.replace("START", str(start)))
+        return self.vmech("modes", path, *arguments)
+
+    def test_modes_of_a_pendulum_are_those_of_its_closed_form(self):
+        run = self.modes_of(-1, arguments=("--out", "modes"))
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("pivot", run.stdout)
+        self.assertIn("\nstable: ", run.stdout)
+        with (FOLDER / "modes" / "modes.csv").open(newline="", encoding="utf-8") as file:
+            (mode,) = csv.DictReader(file)
+        inertia = 0.166 + 2 * 0.5 ** 2
+        frequency = math.sqrt(2 * GRAVITY * 0.5 / inertia) / (2 * math.pi)
+        self.assertAlmostEqual(float(mode["frequency"]), frequency, delta=1e-9)
+        self.assertAlmostEqual(float(mode["damping_ratio"]), 0, delta=1e-12)
+        self.assertEqual(float(mode["pivot.real"]), 1)
+        # The study of the mode swings a tenth of a radian about the equilibrium, in its period.
+        study = FOLDER / "modes" / "mode-1.yaml"
+        run = self.vmech("loads", study, "--out", "loads")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        joints = numbers(FOLDER / "loads" / "joints.csv")
+        self.assertAlmostEqual(joints[0][1], -math.pi / 2 + 0.1, delta=1e-12)
+        self.assertAlmostEqual(joints[len(joints) // 2][1], -math.pi / 2 - 0.1, delta=1e-12)
+        self.assertAlmostEqual(len(joints) * joints[1][0], 1 / frequency, delta=1e-9)
+
+    def test_modes_say_what_is_unstable_and_what_cannot_be_told(self):
+        run = self.modes_of(math.pi / 2)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("\nunstable: ", run.stdout)
+        self.assertIn("runs away, and doubles in", run.stdout)
+        floats = PENDULUM.replace("-9.81", "0")
+        run = self.modes_of(0.3, floats)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("\nneutral, as far as can be told: ", run.stdout)
+        damped = PENDULUM.replace("start: START", "start: START, viscous: 0.5, limits: [-1, 1]")
+        run = self.modes_of(0.3, damped)
+        rate, stiffness = 0.5 / (2 * 0.666), 2 * GRAVITY * 0.5 / 0.666
+        self.assertIn(f"halves in {math.log(2) / rate:.4g}"[:14], run.stdout)
+        self.assertIn(f"{rate / math.sqrt(stiffness):.4f}"[:6], run.stdout)
+        self.assertIn("'pivot' is at -1.57", run.stdout.replace("\u2212", "-"))
+        self.assertIn("outside its limits", run.stdout)
+        falls = PENDULUM.replace("type: revolute", "type: prismatic").replace(
+            "z: [0, 0, 1], x: [1, 0, 0]", "z: [0, 1, 0], x: [1, 0, 0]")
+        run = self.modes_of(0, falls)
+        self.assertEqual(run.returncode, 3, run.stdout)
+        self.assertIn("pendulum.yaml: no equilibrium was found", run.stderr)
+        run = self.vmech("modes", EXAMPLES / "four-bar-study.yaml")
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("has no block `simulation`", run.stderr)
 
     def test_what_is_wrong_is_said_and_nothing_is_written(self):
         for simulation, words in (

@@ -4,8 +4,8 @@
 
 #include <string>
 
+#include "reference_cases.h"
 #include "support/examples.h"
-#include "support/windows.h"
 #include "vmech/dynamics/simulation/equations/equations_of_motion.h"
 #include "vmech/dynamics/simulation/simulate.h"
 
@@ -16,21 +16,6 @@ Simulation With(const Mechanism& mechanism, double end) {
   Simulation simulation;
   simulation.mechanism = mechanism;
   simulation.times = {0, end};
-  return simulation;
-}
-
-Simulation Andrews() {
-  Simulation simulation = With(Example("andrews-squeezer"), 0.03);
-  JointMotor motor;
-  motor.at = {FindJoint(simulation.mechanism, "main"), 0};
-  motor.force = {{0}, {0.033}, 0};
-  simulation.motors = {motor};
-  return simulation;
-}
-
-Simulation FallingWindows(int count) {
-  Simulation simulation = With(Windows(count, 0), 10);
-  simulation.start_rates = {{{FindJoint(simulation.mechanism, "a0"), 0}, -1}};
   return simulation;
 }
 
@@ -56,16 +41,16 @@ void WholeRun(benchmark::State& state, const Simulation& simulation) {
 }
 
 void OfWindows(benchmark::State& state) {
-  Accelerations(state, FallingWindows(static_cast<int>(state.range(0))));
+  Accelerations(state, FallingWindows(static_cast<int>(state.range(0)), {0, 1}));
 }
 
-BENCHMARK_CAPTURE(Accelerations, andrews, Andrews());
+BENCHMARK_CAPTURE(Accelerations, andrews, AndrewsSqueezer());
 BENCHMARK_CAPTURE(Accelerations, bricard, With(Example("bricard"), 10));
 BENCHMARK_CAPTURE(Accelerations, puma_560, With(Example("puma-560"), 1));
 BENCHMARK(OfWindows)->RangeMultiplier(2)->Range(5, 80);
-BENCHMARK_CAPTURE(WholeRun, andrews, Andrews())->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(WholeRun, andrews, AndrewsSqueezer())->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(WholeRun, bricard, With(Example("bricard"), 10))->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(WholeRun, windows, FallingWindows(40))->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(WholeRun, windows, FallingWindows(40, {0, 10}))->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace vmech

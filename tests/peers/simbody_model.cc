@@ -324,6 +324,12 @@ void SimbodyModel::Evaluate(const SimbodyQuery& query, SimbodyAnswer* answer) {
   s.ReadDrives(query, answer);
 }
 
+void SimbodyModel::Accelerate() {
+  Implementation& s = *implementation_;
+  s.state.invalidateAllCacheAtOrAbove(SimTK::Stage::Position);
+  s.system.realize(s.state, SimTK::Stage::Acceleration);
+}
+
 SimbodyAnswer SimbodyModel::Evaluate(const SimbodyQuery& query) {
   SimbodyAnswer answer;
   Evaluate(query, &answer);

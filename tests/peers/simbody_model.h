@@ -75,6 +75,10 @@ class SimbodyModel {
   void Evaluate(const SimbodyQuery& query, SimbodyAnswer* answer);
   SimbodyAnswer Evaluate(const SimbodyQuery& query);
 
+  /// Computes the accelerations anew, from the coordinates and speeds of the last Evaluate: what an
+  /// integrator asks for at every evaluation.
+  void Accelerate();
+
  private:
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;
