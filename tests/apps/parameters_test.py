@@ -17,7 +17,8 @@ EXAMPLES = pathlib.Path()
 NAMED = (("ground: frame", "parameters: {crank: 40 mm, rod: 3*crank}\nground: frame"),
          ("[25, 0, 0]", "[crank/2, 0, 0]"), ("[50, 0, 0]", "[crank, 0, 0]"),
          ("[150, 0, 0]", "[rod, 0, 0]"), ("[100, 0, 0]", "[2*crank, 0, 0]"),
-         ("yy: 100, zz: 110", "yy: 0.04 kg*crank^2, zz: 10 kg*mm^2 + 0.04 kg*crank^2"), ("mass: 0.3\n", "mass: sqrt(0.09)*1 kg\n"))
+         ("yy: 100, zz: 110", "yy: 0.04 kg*crank^2, zz: 10 kg*mm^2 + 0.04 kg*crank^2"),
+         ("mass: 0.3\n", "mass: sqrt(0.09)*1 kg\n"))
 
 
 def without_times(text):
