@@ -82,6 +82,8 @@ class Parameters(unittest.TestCase):
         self.assertEqual({name: entry["value"] for name, entry in stated.items()},
                          {"crank": 50, "rod": 150, "speed": 1500})
         self.assertEqual(stated["rod"]["unit"], "mm")
+        for summary in (named, typed):
+            summary.pop("mechanism_sha256")
         self.assertEqual(named, typed)
         self.assertIn("1500 rpm", (self.folder / "named/out/report.html").read_text())
         slow = self.vmech("named", "loads", "slider-crank-study.yaml", "--out", "slow",
@@ -97,8 +99,7 @@ class Parameters(unittest.TestCase):
                 (1, "--set crank=5 kg: '5 kg': a mass, and crank is a length", "--set",
                  "crank=5 kg"),
                 (1, "--set crank=1/0: '1/0': division by zero", "--set", "crank=1/0"),
-                (1, "is not of the form NAME=VALUE", "--set", "crank"),
-                (2, "links.crank.inertia: ", "--set", "crank=-500")):
+                (1, "is not of the form NAME=VALUE", "--set", "crank")):
             result = self.vmech("named", "check", "slider-crank.yaml", *arguments)
             self.assertEqual(result.returncode, code, result.stderr)
             self.assertIn(words, result.stderr)

@@ -140,7 +140,7 @@ class Simulate(unittest.TestCase):
         self.assertEqual(self.vmech("simulate", study, "--out", "out").returncode, 0)
         joints, summary = FOLDER / "out" / "joints.csv", FOLDER / "out" / "summary.json"
         kept = joints.read_text(encoding="utf-8"), summary.read_text(encoding="utf-8")
-        pushed = "external: [{link: rod, force: [1, 0, 0]}]\n"
+        pushed = "external: [{link: rod, at: [1, 0, 0], force: [1, 0, 0]}]\n"
         for change, words in (
                 (lambda: joints.unlink(), "out: has no joints.csv"),
                 (lambda: joints.write_text(kept[0].replace("pivot.rate", "pivot.speed")),
@@ -156,7 +156,7 @@ class Simulate(unittest.TestCase):
         ):
             change()
             run = self.run_motion(study, "--motion", "out")
-            self.assertEqual(run.returncode, 2, run.stdout)
+            self.assertEqual(run.returncode, 2, words + run.stdout)
             self.assertIn(words, run.stderr)
             self.assertFalse((FOLDER / "loads").exists())
             joints.write_text(kept[0])
