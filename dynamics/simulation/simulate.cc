@@ -256,8 +256,11 @@ class Run {
     PlaceAt(time_, y_.data());
     const Contacts before = equations_.contacts();
     const std::vector<Contacts::Hit> hits = before.FindHits(equations_.motion());
-    if (!hits.empty()) Rebound(hits);
+    const std::vector<StoppedHit> stopped = Rebound(hits);
     FindContacts();
+    for (const StoppedHit& hit : stopped) {
+      if (!equations_.contacts().IsClosed(hit.hit)) result_.events.push_back(hit.event);
+    }
     before.Compare(equations_.contacts(), time_, equations_.motion(), &result_.events);
     Restart();
   }
@@ -273,7 +276,15 @@ class Run {
     y_.segment(equations_.tree().nq, equations_.tree().nv) = equations_.motion().ws().v;
   }
 
-  void Rebound(std::vector<Contacts::Hit> hits) {
+  /// A hit that takes all speed: an event of its own where the freedom does not stay at its limit.
+  struct StoppedHit {
+    Contacts::Hit hit;
+    SimulationEvent event;
+  };
+
+  std::vector<StoppedHit> Rebound(std::vector<Contacts::Hit> hits) {
+    std::vector<StoppedHit> stopped;
+    if (hits.empty()) return stopped;
     const double before = equations_.KineticEnergyHere();
     const VectorXd v = equations_.motion().ws().v;
     std::vector<SimulationEvent> rebounds;
@@ -291,11 +302,16 @@ class Run {
       TakeRates();
     }
     for (size_t i = 0; i < hits.size(); ++i) {
-      if (hits[i].rate != 0) result_.events.push_back(rebounds[i]);
+      if (hits[i].rate != 0) {
+        result_.events.push_back(rebounds[i]);
+      } else {
+        stopped.push_back({hits[i], rebounds[i]});
+      }
     }
     equations_.HoldContacts();
     PlaceAt(time_, y_.data());
     y_[equations_.size() - 1] += before - equations_.KineticEnergyHere();
+    return stopped;
   }
 
   /// Freedoms that would be back at their limit within a microsecond stay there. True if any.

@@ -37,7 +37,7 @@ constexpr std::string_view NameOf(SimulationStatus status) {
 /// Something that happened at once.
 struct SimulationEvent {
   enum class Kind {
-    kRebound,        ///< a limit was hit, and the freedom went back
+    kRebound,        ///< a limit was hit, and the freedom does not stay there
     kLimitCloses,    ///< a freedom comes to rest at its limit
     kLimitOpens,     ///< and leaves it
     kSticks,         ///< dry friction brings a contact to rest, or holds it from the start

@@ -48,6 +48,7 @@ class Contacts {
   };
   std::vector<Hit> FindHits(const ConstrainedMotion& motion) const;
   void CloseStop(const Hit& hit) { stops_[hit.stop].closed = hit.pressing > 0 ? 1 : -1; }
+  bool IsClosed(const Hit& hit) const { return stops_[hit.stop].closed != 0; }
   FreedomId FreedomOf(const Hit& hit) const { return stops_[hit.stop].at; }
 
   /// Friction rests where it does not slide; limits close at which a freedom stands. Needs joint

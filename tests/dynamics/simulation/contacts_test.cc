@@ -72,6 +72,23 @@ TEST(Contacts, AStopHoldsAndLetsGo) {
   EXPECT_NEAR(result.loads.poses[1].joints[0].force.z(), 2 * kGravity, 1e-9);
 }
 
+TEST(Contacts, AnImpactThatTakesAllSpeedIsToldWhereNothingStays) {
+  // Thrown up at 3 m/s against a ceiling 0.2 m above, where it stops dead and falls.
+  Simulation simulation;
+  simulation.mechanism = Block({0, 0, 1});
+  simulation.mechanism.joints[0].upper = {0.2};
+  simulation.start_rates = {{{0, 0}, 3}};
+  simulation.times = {0, 0.3};
+  const SimulationResult result = Simulate(simulation, Tight(1e-12));
+  ASSERT_EQ(result.events.size(), 1U);
+  const SimulationEvent& impact = result.events[0];
+  EXPECT_EQ(impact.kind, Kind::kRebound);
+  const double speed = std::sqrt(9 - 2 * kGravity * 0.2), hit = (3 - speed) / kGravity;
+  EXPECT_NEAR(impact.time, hit, 1e-9);
+  EXPECT_NEAR(impact.rate, speed, 1e-9);
+  EXPECT_NEAR(result.Q(1)[0], 0.2 - kGravity * (0.3 - hit) * (0.3 - hit) / 2, 1e-9);
+}
+
 /// Of all components of all joints.
 int CountCertain(const SimulationResult& result) {
   int count = 0;
