@@ -12,7 +12,7 @@ struct RecordedTree {
   /// it, or has other coordinates; FileErrors if that mechanism cannot be read.
   explicit RecordedTree(const RecordingHeader& header);
   /// Of a session that runs here.
-  RecordedTree(const KinematicTree& held, int grasp, bool regrasps);
+  RecordedTree(const KinematicTree& held, int index, bool gripper);
 
   KinematicTree tree;
   int grasp_index = -1;

@@ -40,7 +40,7 @@ class RecordRing {
   std::vector<TickRecord> records_;
   // Each thread's counter in a cache line of its own, without asking for the line's alignment.
   std::atomic<std::size_t> put_ = 0;
-  std::array<char, 64> apart_{};
+  [[maybe_unused]] std::array<char, 64> apart_{};
   std::atomic<std::size_t> taken_ = 0;
 };
 

@@ -269,6 +269,7 @@ T FigureIn(const Quantity<T>& value, const Unit& asked) {
   return figure;
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): T is a type
 #define VMECH_QUANTITIES(T)                                                               \
   template Quantity<T> Sum(const Quantity<T>&, const Quantity<T>&, const CountingUnits&); \
   template Quantity<T> Product(const Quantity<T>&, const Quantity<T>&);                   \
@@ -280,5 +281,6 @@ T FigureIn(const Quantity<T>& value, const Unit& asked) {
 VMECH_QUANTITIES(double)
 VMECH_QUANTITIES(Dual)
 #undef VMECH_QUANTITIES
+// NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace vmech
