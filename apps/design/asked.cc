@@ -2,13 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
 #include <string_view>
+#include <thread>
 #include <utility>
 
 #include "vmech/apps/console/option_error.h"
+#include "vmech/apps/files/file_kind.h"
+#include "vmech/apps/files/parameter_options.h"
+#include "vmech/studies/study_reader.h"
 
 namespace vmech {
 namespace {
@@ -29,6 +34,19 @@ std::optional<std::pair<std::string, std::string>> Split(const std::string& word
 }
 
 }  // namespace
+
+StudyFile StudyAsked(const char* command, const std::filesystem::path& path,
+                     const std::vector<std::string>& set) {
+  return ReadWithSettings(set, [&](auto settings) {
+    return ReadAs({command, {FileKind::kStudy}}, path,
+                  [&](const std::filesystem::path& file) { return ReadStudy(file, settings); });
+  });
+}
+
+int ThreadsAsked(int threads) {
+  if (threads > 0) return threads;
+  return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 64);
+}
 
 std::vector<StudyParameter> ParametersKnown(const StudyFile& file) {
   std::vector<StudyParameter> known = FileParametersOf(file);

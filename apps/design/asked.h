@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,11 @@ namespace vmech {
 /// @throws OptionError naming the option, the value and what would do; std::invalid_argument for
 /// names that the study has not.
 
+/// The study, for the command of this name, with the parameters that `set` sets.
+StudyFile StudyAsked(const char* command, const std::filesystem::path& path,
+                     const std::vector<std::string>& set);
+/// One for each processor if none are asked for, at most 64.
+int ThreadsAsked(int threads);
 /// Those of the file's `parameters`, and all dimensions.
 std::vector<StudyParameter> ParametersKnown(const StudyFile& file);
 /// Without names those of the file's `parameters`, or all dimensions that are not zero.

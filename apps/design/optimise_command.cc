@@ -1,22 +1,15 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <atomic>
-#include <csignal>
 #include <optional>
-#include <thread>
 
 #include "vmech/apps/commands.h"
 #include "vmech/apps/console/option_error.h"
 #include "vmech/apps/design/asked.h"
 #include "vmech/apps/design/design_texts.h"
-#include "vmech/apps/files/file_kind.h"
-#include "vmech/apps/files/parameter_options.h"
 #include "vmech/apps/files/result_folder.h"
 #include "vmech/apps/loads/named_study.h"
 #include "vmech/apps/report/report_date.h"
 #include "vmech/mechanisms/files/writer.h"
-#include "vmech/studies/study_reader.h"
 
 namespace vmech {
 namespace {
@@ -58,16 +51,11 @@ void RequireDetermined(const DesignTask& task, const StudyFile& file, const Stud
 }  // namespace
 
 int RunOptimise(const OptimiseArguments& arguments) {
-  const StudyFile file = ReadWithSettings(arguments.set, [&](auto settings) {
-    return ReadAs({"optimise", {FileKind::kStudy}}, arguments.study,
-                  [&](const auto& path) { return ReadStudy(path, settings); });
-  });
+  const StudyFile file = StudyAsked("optimise", arguments.study, arguments.set);
   std::optional<ResultFolder> folder;
   if (!arguments.out.empty()) folder.emplace(arguments.out, ResultKind::kDesign);
   DesignOptions options;
-  options.threads = arguments.threads > 0
-                        ? arguments.threads
-                        : std::clamp<int>(std::thread::hardware_concurrency(), 1, 64);
+  options.threads = ThreadsAsked(arguments.threads);
   options.starts = arguments.starts;
   options.program.method = arguments.method == "mma" ? ProgramMethod::kMma : ProgramMethod::kSlsqp;
   LoadStudyOptions how;

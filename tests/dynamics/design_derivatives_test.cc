@@ -179,6 +179,21 @@ TEST(DesignDerivatives, OfALoadThatGoesByTheDrivesCoordinate) {
   });
 }
 
+TEST(DesignDerivatives, OfFrictionThatGoesByTheLoadsOfItsJoints) {
+  LoadStudy study = StudyOf("slider-crank");
+  for (Joint& joint : study.mechanism.joints) {
+    const bool slides = joint.type == JointType::kPrismatic;
+    joint.load_friction = {0.12, slides ? 0 : 0.008, 0, 0.04, slides ? 0.03 : 0};
+  }
+  const PreparedStudy prepared = PrepareStudy(study);
+  ASSERT_TRUE(prepared.model.has_load_friction);
+  const StudyAt at = Changed(study, ChangeForces);
+  const VectorXd slopes = Slopes(study, at), differences = Difference(at);
+  EXPECT_GT(slopes.lpNorm<Eigen::Infinity>(), 1);
+  EXPECT_LE((slopes - differences).lpNorm<Eigen::Infinity>(),
+            kExact * (Loads(study).lpNorm<Eigen::Infinity>() + slopes.lpNorm<Eigen::Infinity>()));
+}
+
 /// Runs a study with this change and returns what is said against it.
 std::string Refusal(const LoadStudy& study, const Change& change) {
   try {
