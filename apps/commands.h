@@ -104,17 +104,18 @@ struct ExportArguments {
 int RunExport(const ExportArguments& arguments);
 
 struct HapticArguments {
-  std::filesystem::path file;        ///< of a mechanism, or of a study with a hand
-  std::string grasp;                 ///< by name; empty: the study's, or the mechanism's first
-  std::string master = "simulated";  ///< see kMasterHelp in haptic_command.cc
-  std::string grip = "relaxed";      ///< of the simulated operator
-  double rate = 1000;                ///< of the simulated master [Hz]
-  double seconds = 20;               ///< 0: until interrupted
-  std::string coupling = "virtual";  ///< or "paper"
-  double scale = 0;                  ///< of all forces; 0: what the device allows
-  double stiffness = 0;              ///< paper: of the constraint [N/m]; 0: what the device allows
-  double inertia = 0;                ///< paper: share that is felt; 0: what the device allows
-  std::string contact = "linear";    ///< paper: law of the constraint, see ParseContact
+  std::filesystem::path file;  ///< of a mechanism, or of a study with a hand
+  // Of every hand. The first grasp may be left out: the study's, or the mechanism's first.
+  std::vector<std::string> grasps;                ///< by name
+  std::vector<std::string> masters{"simulated"};  ///< see MakeMaster
+  std::vector<std::string> grips{"relaxed"};      ///< of the simulated operators, as many or one
+  double rate = 1000;                             ///< of the simulated master [Hz]
+  double seconds = 20;                            ///< 0: until interrupted
+  std::string coupling = "virtual";               ///< or "paper"
+  double scale = 0;                               ///< of all forces; 0: what the device allows
+  double stiffness = 0;            ///< paper: of the constraint [N/m]; 0: what the device allows
+  double inertia = 0;              ///< paper: share that is felt; 0: what the device allows
+  std::string contact = "linear";  ///< paper: law of the constraint, see ParseContact
   std::string estimator = "observer";  ///< paper: of the motion, see ParseEstimator
   std::string wrench = "workless";     ///< paper: rule of w_d, see ParseWrench
   bool gripper = false;                ///< hold while the gripper is closed

@@ -157,17 +157,22 @@ void AddHaptic(CLI::App* app, vmech::HapticArguments* haptic) {
       ->required()
       ->type_name("FILE");
   command
-      ->add_option("--grasp", haptic->grasp,
+      ->add_option("--grasp", haptic->grasps,
                    "where it is held (default: the study's, or the first)")
-      ->type_name("NAME");
-  command->add_option("--master", haptic->master, "the device")
-      ->type_name("MASTER")
-      ->capture_default_str();
+      ->type_name("NAME")
+      ->allow_extra_args(false);
   command
-      ->add_option("--grip", haptic->grip,
-                   "of the simulated operator: absent, light, relaxed, firm")
+      ->add_option("--master", haptic->masters,
+                   "the device; given twice, with two grasps: the mechanism is held in two hands")
+      ->type_name("MASTER")
+      ->allow_extra_args(false)
+      ->default_str("simulated");
+  command
+      ->add_option("--grip", haptic->grips,
+                   "of the simulated operator: absent, light, relaxed, firm; or of each of two")
       ->type_name("WORD")
-      ->capture_default_str();
+      ->allow_extra_args(false)
+      ->default_str("relaxed");
   command->add_option("--rate", haptic->rate, "of the simulated device [Hz]")
       ->check(CLI::Range(10.0, 1e5, "10..1e5"))
       ->capture_default_str();

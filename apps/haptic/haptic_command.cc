@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdio>
@@ -10,8 +11,10 @@
 #include <stdexcept>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "vmech/apps/commands.h"
+#include "vmech/apps/console/option_error.h"
 #include "vmech/apps/files/file_kind.h"
 #include "vmech/apps/files/inputs_apart.h"
 #include "vmech/apps/haptic/handle_home.h"
@@ -85,14 +88,14 @@ Mechanism Assembled(const HapticArguments& arguments, Mechanism mechanism) {
 /// A mechanism that is held, where the hand takes hold.
 struct HeldMechanism {
   explicit HeldMechanism(const HapticArguments& arguments)
-      : HeldMechanism(ReadSubject(arguments.file, arguments.grasp, arguments.set),
+      : HeldMechanism(ReadSubject(arguments.file, arguments.grasps, arguments.set),
                       [&](const Mechanism& mechanism) { return Assembled(arguments, mechanism); }) {
   }
   /// That of a recording, as it was.
   explicit HeldMechanism(const RecordingHeader& header)
       : HeldMechanism(
             HapticSubject{
-                RecordedTree(header).tree.mechanism, RecordedTree(header).grasp_index, {}},
+                RecordedTree(header).tree.mechanism, RecordedTree(header).grasp_indices, {}},
             [](const Mechanism& mechanism) { return mechanism; }) {}
 
   template <typename Assemble>
@@ -101,15 +104,17 @@ struct HeldMechanism {
         tree(BuildKinematicTree(assemble(subject.mechanism), KeepPassiveJoints(subject.mechanism))),
         q(StartCoordinates(tree)),
         R_WD(DeviceAxes(subject.mechanism)) {
-    const GraspFrame grasp = GraspFrameOf(tree, subject.grasp);
     TreeWorkspace<double> ws(tree);
     ForwardKinematics(tree, q.data(), &ws);
-    X_WG = PoseInWorld(ws, grasp.node, grasp.X_BG);
+    for (const int index : subject.grasps) {
+      const GraspFrame grasp = GraspFrameOf(tree, index);
+      X_WG.push_back(PoseInWorld(ws, grasp.node, grasp.X_BG));
+    }
   }
 
-  /// Held as this device can: at a point where it exerts no moments.
-  void FitTo(const DeviceInfo& device, bool quiet) {
-    Grasp& grasp = tree.mechanism.grasps[static_cast<std::size_t>(subject.grasp)];
+  /// Held by a hand as its device can: at a point where it exerts no moments.
+  void FitTo(const DeviceInfo& device, std::size_t hand, bool quiet) {
+    Grasp& grasp = tree.mechanism.grasps[static_cast<std::size_t>(subject.grasps[hand])];
     if (!ForcesAlone(device) || grasp.kind == GraspKind::kPoint) return;
     grasp.kind = GraspKind::kPoint;
     if (quiet) return;
@@ -123,8 +128,10 @@ struct HeldMechanism {
   KinematicTree tree;
   VectorXd q;
   Matrix3d R_WD;
-  Posed X_WG;
+  std::vector<Posed> X_WG;  // of every hand
 };
+
+using Masters = std::vector<std::unique_ptr<Master>>;
 
 WorkspaceOptions WorkspaceOf(const HapticArguments& arguments) {
   WorkspaceOptions workspace;
@@ -144,16 +151,13 @@ SafetyOptions SafetyFor(const DeviceInfo& device, SafetyOptions safety) {
 }
 
 RunnerOptions OptionsOf(const HapticArguments& arguments, const HeldMechanism& held,
-                        const Rendering& rendering, const DeviceInfo& device) {
+                        const Rendering& rendering) {
   RunnerOptions options;
   options.seconds = arguments.seconds;
-  options.observer = rendering.observer;
   if (arguments.post_mortem) options.post_mortem = arguments.file.stem().string() + "-fault.csv";
   options.R_WD = held.R_WD;
-  options.safety = SafetyFor(device, rendering.safety);
   options.gripper = arguments.gripper;
   options.notes = {{"file", arguments.file.string()},
-                   {"grasp", arguments.grasp},
                    {"coupling", arguments.coupling},
                    {"scale", fmt::to_string(arguments.scale)},
                    {"stiffness", fmt::to_string(arguments.stiffness)},
@@ -163,7 +167,13 @@ RunnerOptions OptionsOf(const HapticArguments& arguments, const HeldMechanism& h
                    {"wrench", arguments.wrench},
                    {"gripper", fmt::to_string(static_cast<int>(arguments.gripper))}};
   for (const std::string& word : arguments.set) options.notes.emplace_back("set", word);
-  for (const auto& note : NotesOf(rendering.promise)) options.notes.push_back(note);
+  for (std::size_t i = 0; i < rendering.hands.size(); ++i) {
+    const RenderedHand& hand = rendering.hands[i];
+    const int index = static_cast<int>(i);
+    options.notes.emplace_back(RecordingHeader::KeyOf("grasp", index),
+                               held.tree.mechanism.grasps[hand.grasp].name);
+    for (const auto& note : NotesOf(hand.promise, index)) options.notes.push_back(note);
+  }
   options.mechanism = RecordedMechanismOf(held.tree);
   if (arguments.free_running) options.realtime.reset();
   return options;
@@ -175,25 +185,41 @@ std::unique_ptr<LoopClock> ClockOf(const HapticArguments& arguments) {
   return std::make_unique<WallClock>();
 }
 
-/// Runs the loop of a configured master and reports.
-int Hold(const HeldMechanism& held, HapticArguments arguments, Master* master, LoopClock* clock) {
-  arguments.grasp = held.subject.mechanism.grasps[held.subject.grasp].name;
+std::vector<RunnerHand> HandsOf(const Rendering& rendering, const Masters& masters) {
+  std::vector<RunnerHand> hands;
+  for (std::size_t i = 0; i < masters.size(); ++i) {
+    const RenderedHand& hand = rendering.hands[i];
+    hands.push_back({masters[i].get(), SafetyFor(masters[i]->info(), hand.safety), hand.observer});
+  }
+  return hands;
+}
+
+/// Runs the loop of configured masters, one for each hand, and reports.
+int Hold(const HeldMechanism& held, const HapticArguments& arguments, const Masters& masters,
+         LoopClock* clock) {
+  std::vector<RenderedHand> hands;
+  for (std::size_t i = 0; i < masters.size(); ++i) {
+    hands.push_back({held.subject.grasps[i], &masters[i]->info(), {}, {}, {}});
+  }
   Rendering rendering =
       MakeRendering({arguments.coupling, arguments.scale, arguments.stiffness, arguments.inertia,
                      arguments.contact, arguments.estimator, arguments.wrench},
-                    held.tree, held.subject.grasp, held.q, master->info());
+                    held.tree, std::move(hands), held.q);
   ShownTick* shown = nullptr;
   if (arguments.view) {
-    auto tick =
-        std::make_unique<ShownTick>(std::move(rendering.tick), PictureOf(held.tree, held.q));
+    auto tick = std::make_unique<ShownTick>(std::move(rendering.tick),
+                                            PictureOf(held.tree, held.q, masters.size()));
     shown = tick.get();
     rendering.tick = std::move(tick);
   }
-  Runner runner(OptionsOf(arguments, held, rendering, master->info()), master, rendering.tick.get(),
-                clock);
+  Runner runner(OptionsOf(arguments, held, rendering), HandsOf(rendering, masters),
+                rendering.tick.get(), clock);
   SessionRecording recording({arguments.record, arguments.force, arguments.free_running}, held.tree,
-                             held.subject.grasp, &runner);
-  if (!arguments.quiet) fmt::print("{}{}", BoundsReport(master->info()), rendering.report);
+                             held.subject.grasps.front(), &runner);
+  if (!arguments.quiet) {
+    for (const auto& master : masters) fmt::print("{}", BoundsReport(master->info()));
+    fmt::print("{}", rendering.report);
+  }
   RunSummary summary;
   std::optional<HapticView> view;
   if (shown != nullptr) {
@@ -238,13 +264,12 @@ HapticArguments ArgumentsOf(const Recording& recording, const ReplayArguments& r
         fmt::format("{}: does not say what was held; only recordings of `vmech haptic --record` do",
                     replay.recording.string()));
   }
-  arguments.grasp = recording.Note("grasp");
-  arguments.coupling = recording.Note("coupling");
-  for (auto [key, word] :
-       {std::pair{"contact", &arguments.contact}, std::pair{"estimator", &arguments.estimator},
-        std::pair{"wrench", &arguments.wrench}}) {
-    if (const std::string note = recording.Note(key); !note.empty()) *word = note;
+  arguments.grasps.clear();
+  for (int hand = 0; hand < recording.hands(); ++hand) {
+    const std::string grasp = recording.Note(RecordingHeader::KeyOf("grasp", hand));
+    if (!grasp.empty()) arguments.grasps.push_back(grasp);
   }
+  arguments.coupling = recording.Note("coupling");
   const auto number = [&](const char* key) {
     const std::string text = recording.Note(key);
     char* end = nullptr;
@@ -286,15 +311,31 @@ int Audit(const std::filesystem::path& file) {
   const RecordedTree held(reader.header());
   RecordingAudit audit(reader.header());
   FeltFit felt(reader.header(), held);
+  const bool one_hand = reader.header().hands() == 1;
   TickRecord tick = reader.header().EmptyTick();
   while (reader.Next(&tick)) {
     audit.Take(tick);
-    felt.Take(tick);
+    if (one_hand) felt.Take(tick);
   }
   const AuditReport report = audit.Report();
   const FeltReport told = felt.Report();
-  fmt::print("{}{}{}{}", report.Text(), told.Text(), told.Verdict(), StateOf(reader));
+  const std::string of_the_hand = one_hand ? told.Text() + told.Verdict() : "";
+  fmt::print("{}{}{}", report.Text(), of_the_hand, StateOf(reader));
   return report.sound() ? kSuccess : kNoSolution;
+}
+
+/// A grasp for every device.
+void RequireGraspsForMasters(const HapticArguments& arguments) {
+  const std::size_t hands = arguments.masters.size();
+  const bool named = arguments.grasps.size() == hands || (hands == 1 && arguments.grasps.empty());
+  if (!named) {
+    throw OptionError(fmt::format("--grasp: {} given for {} device{}; give one for each --master",
+                                  arguments.grasps.size(), hands, hands == 1 ? "" : "s"));
+  }
+  if (arguments.grips.size() > hands) {
+    throw OptionError(fmt::format("--grip: {} given for {} device{}", arguments.grips.size(), hands,
+                                  hands == 1 ? "" : "s"));
+  }
 }
 
 /// Nothing is written over what a session reads.
@@ -302,8 +343,8 @@ void RequireRecordApart(const HapticArguments& arguments) {
   if (arguments.record.empty()) return;
   constexpr std::string_view kReplay = "replay:";
   std::vector<std::filesystem::path> inputs{arguments.file};
-  if (arguments.master.starts_with(kReplay)) {
-    inputs.emplace_back(arguments.master.substr(kReplay.size()));
+  for (const std::string& master : arguments.masters) {
+    if (master.starts_with(kReplay)) inputs.emplace_back(master.substr(kReplay.size()));
   }
   RequireOutputsApart(inputs, {arguments.record});
 }
@@ -312,19 +353,25 @@ void RequireRecordApart(const HapticArguments& arguments) {
 
 int RunHaptic(const HapticArguments& arguments) {
   RequireRecordApart(arguments);
+  RequireGraspsForMasters(arguments);
   const WorkspaceOptions workspace = WorkspaceOf(arguments);
   HeldMechanism held(arguments);
-  std::unique_ptr<Master> master =
-      MakeMaster({arguments.master, arguments.rate, ParseGrip(arguments.grip), held.R_WD, held.X_WG,
-                  held.subject.law, held.subject.end, arguments.gripper});
-  master->Configure();
   const std::unique_ptr<LoopClock> clock = ClockOf(arguments);
-  if (!arguments.home.empty()) {
-    BringHome(master.get(), clock.get(), Vector3d(arguments.home.data()));
+  Masters masters;
+  for (std::size_t i = 0; i < arguments.masters.size(); ++i) {
+    const std::string& grip = arguments.grips[std::min(i, arguments.grips.size() - 1)];
+    std::unique_ptr<Master> master =
+        MakeMaster({arguments.masters[i], arguments.rate, ParseGrip(grip), held.R_WD, held.X_WG[i],
+                    i == 0 ? held.subject.law : std::nullopt, held.subject.end, arguments.gripper,
+                    static_cast<unsigned>(i + 1)});
+    master->Configure();
+    if (!arguments.home.empty()) {
+      BringHome(master.get(), clock.get(), Vector3d(arguments.home.data()));
+    }
+    masters.push_back(InWorkspace(workspace, std::move(master)));
+    held.FitTo(masters.back()->info(), i, arguments.quiet);
   }
-  master = InWorkspace(workspace, std::move(master));
-  held.FitTo(master->info(), arguments.quiet);
-  return Hold(held, arguments, master.get(), clock.get());
+  return Hold(held, arguments, masters, clock.get());
 }
 
 int RunReplay(const ReplayArguments& replay) {
@@ -347,13 +394,16 @@ int RunReplay(const ReplayArguments& replay) {
   HeldMechanism held = as_it_was ? HeldMechanism(static_cast<const RecordingHeader&>(recording))
                                  : HeldMechanism(arguments);
   if (!replay.motion.empty()) {
-    WriteHandMotion(replay.motion, recording, held.R_WD, held.X_WG);
+    WriteHandMotion(replay.motion, recording, held.R_WD, held.X_WG.front());
   }
-  ReplayMaster master(recording, ReplayKind::kSession);
-  master.Configure();
-  held.FitTo(master.info(), arguments.quiet);
+  Masters masters;
+  for (int i = 0; i < recording.hands(); ++i) {
+    masters.push_back(std::make_unique<ReplayMaster>(recording, ReplayKind::kSession, i));
+    masters.back()->Configure();
+    held.FitTo(masters.back()->info(), static_cast<std::size_t>(i), arguments.quiet);
+  }
   const std::unique_ptr<LoopClock> clock = ClockOf(arguments);
-  return Hold(held, arguments, &master, clock.get());
+  return Hold(held, arguments, masters, clock.get());
 }
 
 }  // namespace vmech

@@ -11,6 +11,7 @@
 #include <functional>
 #include <map>
 #include <stdexcept>
+#include <utility>
 
 #include "vmech/apps/console/option_error.h"
 #include "vmech/apps/files/file_kind.h"
@@ -42,7 +43,9 @@ HapticSubject ReadHeldStudy(const std::filesystem::path& file,
   if (!study.study.external.empty()) {
     throw FileErrors(file.string(), "external loads are not rendered to a hand; leave them out");
   }
-  return {std::move(study.study.mechanism), study.study.hand->grasp, study.study.hand->law,
+  return {std::move(study.study.mechanism),
+          {study.study.hand->grasp},
+          study.study.hand->law,
           study.study.times.back()};
 }
 
@@ -68,7 +71,7 @@ std::unique_ptr<Master> MakeSimulated(const MasterRequest& request) {
   const Posed X_DH = ArmModel(std::make_shared<const ArmDescription>(SarcosMasterArm())).X_DH();
   options.motion = request.law ? HandMotionOf(*request.law, request.end,
                                               GraspedAt(request.R_WD, X_DH, request.X_WG))
-                               : Wander(X_DH, kReach, kTurn, 1);
+                               : Wander(X_DH, kReach, kTurn, request.seed);
   if (request.gripper) options.squeeze = SqueezeWithPauses;
   return std::make_unique<SimulatedMaster>(options);
 }
@@ -103,27 +106,38 @@ std::unique_ptr<Master> MakeHaply(const std::string& port) {
   return std::make_unique<HaplyMaster>(options);
 }
 
-Rendering MakeCoupled(const RenderingRequest& request, const KinematicTree& tree, int grasp,
-                      const VectorXd& q, const DeviceInfo& device) {
-  CoupledTickOptions options;
-  options.smoothing = 2 * device.period;
-  const CouplingChoice choice =
-      ChooseCoupling(tree, GraspFrameOf(tree, grasp), q, device, options.smoothing);
-  options.coupling = choice.coupling;
-  options.scale = request.scale > 0 ? request.scale : choice.scale;
+std::string CouplingReport(const CouplingChoice& choice) {
   const Vector6d& K = choice.coupling.stiffness;
-  std::string report = fmt::format(
+  return fmt::format(
       "virtual coupling: {:.4g} N/m, {:.4g} N m/rad; inertia {:.3g} times the handle's, "
       "weight at the hand {:.3g} N\n",
       K[0], K[3], choice.inertia_ratio, choice.weight);
+}
+
+Rendering MakeCoupled(const RenderingRequest& request, const KinematicTree& tree,
+                      std::vector<RenderedHand> hands, const VectorXd& q) {
+  CoupledTickOptions options;
+  const double period = hands.front().device->period;
+  options.smoothing = 2 * period;
+  std::vector<CoupledHand> coupled;
+  std::string report;
+  double bearable = 1;
+  for (RenderedHand& hand : hands) {
+    const CouplingChoice choice =
+        ChooseCoupling(tree, GraspFrameOf(tree, hand.grasp), q, *hand.device, options.smoothing);
+    coupled.push_back({hand.grasp, choice.coupling});
+    hand.safety = choice.Safety();
+    bearable = std::min(bearable, choice.scale);
+    report += CouplingReport(choice);
+  }
+  options.scale = request.scale > 0 ? request.scale : bearable;
   report += ScaleReport(options.scale, request.scale);
-  SessionPromise promise{true, false, options.scale, 1, options.coupling};
-  promise.coupling.stiffness /= options.scale;
-  promise.coupling.damping /= options.scale;
-  promise.coupling.max_force /= options.scale;
-  promise.coupling.max_moment /= options.scale;
-  return {std::make_unique<CoupledTick>(tree, grasp, q, device.period, options), choice.Safety(),
-          HandObserverOptions{}, std::move(report), promise};
+  for (size_t i = 0; i < hands.size(); ++i) {
+    hands[i].promise = {true, false, options.scale, 1,
+                        AtTheMechanism(coupled[i].coupling, options.scale)};
+  }
+  auto tick = std::make_unique<CoupledTick>(tree, coupled, q, period, options);
+  return {std::move(tick), std::move(hands), std::move(report)};
 }
 
 ContactKind ParseContact(const std::string& word) {
@@ -151,8 +165,16 @@ WrenchRule ParseWrench(const std::string& word) {
   throw OptionError(fmt::format("--wrench: {} is not one of workless, paper", Quoted(word)));
 }
 
-Rendering MakePaper(const RenderingRequest& request, const KinematicTree& tree, int grasp,
-                    const VectorXd& q, const DeviceInfo& device) {
+Rendering MakePaper(const RenderingRequest& request, const KinematicTree& tree,
+                    std::vector<RenderedHand> hands, const VectorXd& q) {
+  if (hands.size() > 1) {
+    throw OptionError(
+        "--coupling paper: answers the acceleration of one hand; hold in two hands with "
+        "--coupling virtual");
+  }
+  RenderedHand& hand = hands.front();
+  const DeviceInfo& device = *hand.device;
+  const int grasp = hand.grasp;
   const PaperChoice choice =
       ChoosePaper({request.scale, request.stiffness, request.inertia, ParseContact(request.contact),
                    ParseEstimator(request.estimator), ParseWrench(request.wrench)},
@@ -173,39 +195,56 @@ Rendering MakePaper(const RenderingRequest& request, const KinematicTree& tree, 
     promise.coupling.stiffness.tail<3>().setZero();
     promise.coupling.damping.tail<3>().setZero();
   }
-  return {std::make_unique<MechanismTick>(tree, grasp, q, device, options), choice.safety,
-          choice.observer, std::move(report), promise};
+  hand.safety = choice.safety;
+  hand.observer = choice.observer;
+  hand.promise = promise;
+  auto tick = std::make_unique<MechanismTick>(tree, grasp, q, device, options);
+  return {std::move(tick), std::move(hands), std::move(report)};
+}
+
+/// @throws OptionError naming those that there are.
+int NamedGrasp(const Mechanism& mechanism, const std::string& grasp) {
+  const int index = FindGrasp(mechanism, grasp);
+  if (index >= 0) return index;
+  std::vector<std::string> names;
+  for (const Grasp& g : mechanism.grasps) names.push_back(g.name);
+  throw OptionError(fmt::format("--grasp: there is no grasp {}{}; there are {}", Quoted(grasp),
+                                DidYouMean(grasp, names), fmt::join(names, ", ")));
 }
 
 }  // namespace
 
-Rendering MakeRendering(const RenderingRequest& request, const KinematicTree& tree, int grasp,
-                        const VectorXd& q, const DeviceInfo& device) {
+Rendering MakeRendering(const RenderingRequest& request, const KinematicTree& tree,
+                        std::vector<RenderedHand> hands, const VectorXd& q) {
   const bool paper = request.coupling == "paper";
-  return (paper ? MakePaper : MakeCoupled)(request, tree, grasp, q, device);
+  return (paper ? MakePaper : MakeCoupled)(request, tree, std::move(hands), q);
 }
 
-HapticSubject ReadSubject(const std::filesystem::path& file, const std::string& grasp,
+HapticSubject ReadSubject(const std::filesystem::path& file,
+                          const std::vector<std::string>& grasps,
                           const std::vector<std::string>& set) {
   HapticSubject subject = ReadWithSettings(set, [&](auto settings) {
     if (KindOfFile(file) == FileKind::kStudy) return ReadHeldStudy(file, settings);
     const Taken taken{"haptic", {FileKind::kMechanism, FileKind::kStudy}};
     return HapticSubject{
         ReadAs(taken, file, [&](const auto& path) { return ReadMechanism(path, settings); }),
-        0,
+        {0},
         {}};
   });
-  if (!grasp.empty()) subject.grasp = FindGrasp(subject.mechanism, grasp);
-  if (subject.grasp >= 0 && subject.grasp < static_cast<int>(subject.mechanism.grasps.size())) {
-    return subject;
-  }
-  std::vector<std::string> names;
-  for (const Grasp& g : subject.mechanism.grasps) names.push_back(g.name);
-  if (names.empty()) {
+  if (subject.mechanism.grasps.empty()) {
     throw FileErrors(file.string(), "no grasps: give the mechanism one (docs/file-format.md)");
   }
-  throw OptionError(fmt::format("--grasp: there is no grasp {}{}; there are {}", Quoted(grasp),
-                                DidYouMean(grasp, names), fmt::join(names, ", ")));
+  if (!grasps.empty()) subject.grasps.clear();
+  for (const std::string& grasp : grasps) {
+    const int index = NamedGrasp(subject.mechanism, grasp);
+    const std::vector<int>& taken = subject.grasps;
+    if (std::find(taken.begin(), taken.end(), index) != taken.end()) {
+      throw OptionError(fmt::format("--grasp: {} is held by another hand already; name two grasps",
+                                    Quoted(grasp)));
+    }
+    subject.grasps.push_back(index);
+  }
+  return subject;
 }
 
 Matrix3d DeviceAxes(const Mechanism& mechanism) {

@@ -19,18 +19,20 @@
 
 namespace vmech {
 
-/// What a hand is to hold.
+/// What a hand, or several, are to hold.
 struct HapticSubject {
   Mechanism mechanism;
-  int grasp = -1;
-  std::optional<HandLaw> law;  ///< of the simulated operator's hand; none: it wanders
+  std::vector<int> grasps;     ///< of every hand
+  std::optional<HandLaw> law;  ///< of the first simulated operator's hand; none: it wanders
   double end = 0;              ///< of the law [s]; it stands still from then on
 };
 
-/// Reads a mechanism, or a study that a hand moves. `grasp` by name; empty: the study's, or the
+/// Reads a mechanism, or a study that a hand moves. `grasps` by name; none: the study's, or the
 /// first.
-/// @throws FileErrors naming the file and what is wrong; OptionError for an unknown grasp.
-HapticSubject ReadSubject(const std::filesystem::path& file, const std::string& grasp,
+/// @throws FileErrors naming the file and what is wrong; OptionError for an unknown grasp, or one
+/// that two hands are to hold.
+HapticSubject ReadSubject(const std::filesystem::path& file,
+                          const std::vector<std::string>& grasps,
                           const std::vector<std::string>& set = {});
 
 /// How the device's axes lie in the world: its z against gravity (along z if there is none).
@@ -68,6 +70,7 @@ struct MasterRequest {
   std::optional<HandLaw> law;
   double end = 0;        ///< of the law [s]
   bool gripper = false;  ///< the simulated operator works it
+  unsigned seed = 1;     ///< of a hand that wanders
 };
 std::unique_ptr<Master> MakeMaster(const MasterRequest& request);
 
@@ -91,18 +94,28 @@ struct RenderingRequest {
   std::string contact = "linear", estimator = "observer", wrench = "workless";
 };
 
-/// The virtual side of a session, what it asks of the safety filter, and both in words.
-struct Rendering {
-  std::unique_ptr<Tick> tick;
+/// A hand that is to hold a mechanism.
+struct RenderedHand {
+  int grasp = -1;
+  const DeviceInfo* device = nullptr;
+  // What is rendered to it.
   SafetyOptions safety;
   HandObserverOptions observer;
-  std::string report;
   SessionPromise promise;
 };
 
-/// A mechanism held at its grasp in the closed pose q, for a device. Keeps a reference to the tree.
-/// @throws std::invalid_argument as the ticks; OptionError for an unknown word.
-Rendering MakeRendering(const RenderingRequest& request, const KinematicTree& tree, int grasp,
-                        const VectorXd& q, const DeviceInfo& device);
+/// The virtual side of a session, what it asks of the safety filters, and both in words.
+struct Rendering {
+  std::unique_ptr<Tick> tick;
+  std::vector<RenderedHand> hands;
+  std::string report;
+};
+
+/// A mechanism held at grasps in the closed pose q, for a device each. Keeps a reference to the
+/// tree. Of several hands all forces are scaled alike, so that what one pulls the other feels.
+/// @throws std::invalid_argument as the ticks; OptionError for an unknown word, and for the paper's
+/// way in several hands.
+Rendering MakeRendering(const RenderingRequest& request, const KinematicTree& tree,
+                        std::vector<RenderedHand> hands, const VectorXd& q);
 
 }  // namespace vmech

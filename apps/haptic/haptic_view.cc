@@ -117,10 +117,11 @@ std::string HapticView::url() const {
   return parts_->session.url();
 }
 
-TickPicture PictureOf(const KinematicTree& tree, const VectorXd& q) {
+TickPicture PictureOf(const KinematicTree& tree, const VectorXd& q, std::size_t hands) {
   TickPicture picture;
   picture.q = q;
   picture.joints.resize(tree.mechanism.joints.size());
+  picture.others.resize(hands - 1);
   return picture;
 }
 

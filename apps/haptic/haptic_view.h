@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 
 #include "vmech/hw_interface/loop/runner.h"
@@ -23,7 +24,7 @@ class HapticView {
   std::unique_ptr<Parts> parts_;
 };
 
-/// A picture of the tree's sizes, for ShownTick.
-TickPicture PictureOf(const KinematicTree& tree, const VectorXd& q);
+/// A picture of the tree's sizes and so many hands, for ShownTick.
+TickPicture PictureOf(const KinematicTree& tree, const VectorXd& q, std::size_t hands);
 
 }  // namespace vmech

@@ -45,12 +45,13 @@ SessionRecording::SessionRecording(const SessionRecordingOptions& options,
     : file_(options.file),
       lock_(OpenFor(options)),
       held_(tree, grasp, runner->Header().Number("gripper", 0) != 0),
-      felt_(runner->Header(), held_) {
+      felt_(runner->Header(), held_),
+      tells_felt_(runner->Header().hands() == 1) {
   RecorderOptions recorder;
   recorder.file = lock_.file();
   recorder.name = file_.string();
   recorder.waits = options.waits;
-  recorder.listeners = {&felt_};
+  if (tells_felt_) recorder.listeners = {&felt_};
   recorder.on_failure = [runner](const std::string& reason) {
     fmt::print(stderr, "\n{}: the recording ends here, and so does the session\n", reason);
     runner->Stop();
@@ -70,7 +71,7 @@ void SessionRecording::RequireWritten() const {
 
 std::string SessionRecording::Report() const {
   const FeltReport felt = felt_.Report();
-  std::string text = felt.Text() + felt.Verdict();
+  std::string text = tells_felt_ ? felt.Text() + felt.Verdict() : "";
   if (!file_.empty()) {
     text += fmt::format("  recorded {} ticks, lost {}{}\n", recorder_->written(), recorder_->lost(),
                         recorder_->lost() > 0 ? ": the disk was too slow for the session" : "");

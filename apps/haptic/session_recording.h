@@ -38,6 +38,7 @@ class SessionRecording {
   PathLock lock_;
   RecordedTree held_;
   FeltFit felt_;
+  bool tells_felt_;  // of a hand whose force alone moves the mechanism
   std::optional<TickRecorder> recorder_;
 };
 

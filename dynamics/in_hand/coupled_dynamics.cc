@@ -1,6 +1,7 @@
 #include "vmech/dynamics/in_hand/coupled_dynamics.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "vmech/base/check_range.h"
@@ -32,14 +33,23 @@ double SquaredSpeed(const VectorXd& v) {
   return DotOfDouble4(v.data(), v.data(), static_cast<int>(v.size()));
 }
 
+std::vector<GraspFrame> FramesOf(std::span<const CoupledGrasp> hands) {
+  std::vector<GraspFrame> frames;
+  for (const CoupledGrasp& hand : hands) frames.push_back(hand.frame);
+  return frames;
+}
+
 }  // namespace
 
 CoupledDynamics::CoupledDynamics(const KinematicTree& tree, const GraspFrame& grasp,
                                  const HandCoupling& coupling, double step, const VectorXd& q)
+    : CoupledDynamics(tree, std::array{CoupledGrasp{grasp, coupling}}, step, q) {}
+
+CoupledDynamics::CoupledDynamics(const KinematicTree& tree, std::span<const CoupledGrasp> hands,
+                                 double step, const VectorXd& q)
     : tree_(tree),
       T_(step),
-      pose_(tree, grasp),
-      coupling_(coupling, grasp.kind, step),
+      pose_(tree, FramesOf(hands)),
       passive_(tree),
       system_(tree.nv, static_cast<int>(pose_.C().rows())),
       closing_(tree, pose_),
@@ -58,18 +68,25 @@ CoupledDynamics::CoupledDynamics(const KinematicTree& tree, const GraspFrame& gr
       limited_right_(v_),
       mu_(pose_.e2()),
       d_(mu_),
-      joints_(tree.mechanism.joints.size()) {
+      joints_(tree.mechanism.joints.size()),
+      w_(hands.size()) {
   CheckRange("CoupledDynamics", "step", step, 1e-7, 1);
   RequireCoordinates("CoupledDynamics: q", tree, q);
   pose_.Set(q);
   RequireClosed("CoupledDynamics", pose_.e2().norm(), kOpen);
-  hand_.X = pose_.grasp_frame();
+  for (const CoupledGrasp& hand : hands) {
+    hands_.push_back({VirtualCoupling(hand.coupling, hand.frame.kind, step), {}, {}});
+    hands_.back().at.X = pose_.grasp_frame(static_cast<int>(hands_.size()) - 1);
+  }
   UpdateInertia();
   UpdateVelocities();
   BiasForces();
   regularisation_ = VectorXd::Constant(tree.nv, kRegularisation / T_ * M_.diagonal().maxCoeff());
   BuildSystem();
-  AddCoupling();
+  // Weights count the first hand alone, so that another that does not hold changes nothing.
+  for (Hand& hand : hands_) hand.coupled = &hand == &hands_.front();
+  AddCouplings();
+  for (Hand& hand : hands_) hand.coupled = true;
   AddRegularisation();
   const double rows = pose_.C().squaredNorm();
   if (rows > 0) system_.SetWeight(kLoopWeight * A_.trace() / rows);
@@ -96,19 +113,27 @@ void CoupledDynamics::AddRegularisation() {
 
 void CoupledDynamics::Stop() noexcept {
   v_.setZero();
+  for (Hand& hand : hands_) hand.fading = {};
   energy_limit_.Forget();
   UpdateVelocities();
 }
 
-void CoupledDynamics::GraspAt(const GraspFrame& grasp) noexcept {
-  pose_.SetGrasp(grasp);
+void CoupledDynamics::GraspAt(const GraspFrame& grasp, int hand) noexcept {
+  pose_.SetGrasp(grasp, hand);
   pose_.SetJacobians();
-  coupled_ = true;
+  hands_[hand].coupled = true;
 }
 
-void CoupledDynamics::LetGo() noexcept {
-  coupled_ = false;
-  coupling_.LetGo();
+void CoupledDynamics::LetGo(int hand) noexcept {
+  hands_[hand].coupled = false;
+  hands_[hand].coupling.LetGo();
+}
+
+void CoupledDynamics::Loosen(double rate, int hand) noexcept {
+  FadingWrench& fading = hands_[hand].fading;
+  fading = FadingWrench(hands_[hand].coupling.stiffness(), rate, T_);
+  fading.Add(w_[hand]);
+  LetGo(hand);
 }
 
 CoupledStatus CoupledDynamics::Step(const Posed& X_WH, const Vector6d& V_WH) noexcept {
@@ -116,12 +141,15 @@ CoupledStatus CoupledDynamics::Step(const Posed& X_WH, const Vector6d& V_WH) noe
 }
 
 CoupledStatus CoupledDynamics::Step(const MovingFrame& hand) noexcept {
-  hand_ = hand;
+  SetHand(hand);
+  return Step();
+}
+
+CoupledStatus CoupledDynamics::Step() noexcept {
   Stretch();
   const double before = Energy();
+  Fade();
   BiasForces();
-  BuildSystem();
-  AddCoupling();
   if (!SolveStep()) return CoupledStatus::kFailed;
   FindWrenches();
   const CoupledStatus status = Move();
@@ -130,19 +158,32 @@ CoupledStatus CoupledDynamics::Step(const MovingFrame& hand) noexcept {
   return status;
 }
 
-/// Velocities at the end of the step, and the coupling's wrench.
-bool CoupledDynamics::SolveStep() noexcept {
-  // Where it slips, a rough velocity tells in which direction.
-  const Solving first = coupling_.slipping() ? Solving::kRoughly : Solving::kFully;
-  if (!SolveWithLimits(first)) return false;
-  if (Slip()) {
-    BuildSystem();
-    pose_.AddForces(coupling_.w(), &right_);
-    return SolveWithLimits(Solving::kFully);
+/// What hands that have let go still pull.
+void CoupledDynamics::Fade() noexcept {
+  for (int i = 0; i < hands(); ++i) {
+    hands_[i].fading.Step(pose_.Twist(v_, i) - hands_[i].at.V);
   }
-  if (first == Solving::kRoughly) {
+}
+
+/// Velocities at the end of the step, and the couplings' wrenches. Each that turns out too large is
+/// given at its largest from then on, so that the mechanism gets what the hands pay for.
+bool CoupledDynamics::SolveStep() noexcept {
+  // Where one slips, a rough velocity tells in which direction.
+  const Solving first = slipping() ? Solving::kRoughly : Solving::kFully;
+  for (Hand& hand : hands_) hand.slips = false;
+  BuildSystem();
+  AddCouplings();
+  if (!SolveWithLimits(first)) return false;
+  bool slips = Slip();
+  if (!slips && first == Solving::kRoughly) {
     if (!SolveWithLimits(Solving::kFully)) return false;
-    Slip();
+    slips = Slip();
+  }
+  while (slips) {
+    BuildSystem();
+    AddCouplings();
+    if (!SolveWithLimits(Solving::kFully)) return false;
+    slips = Slip();
   }
   return true;
 }
@@ -162,16 +203,30 @@ void CoupledDynamics::BuildSystem() noexcept {
   passive_.AddTo(q_, v_, T_, &A_, &right_);
 }
 
-void CoupledDynamics::AddCoupling() noexcept {
-  if (!coupled_) return;
-  pose_.ComputeWeightedJacobian(coupling_.root_gain(), &rootKJ_);
-  system_.AddGram(rootKJ_, &A_);
-  pose_.AddForces(coupling_.Given(), &right_);
+void CoupledDynamics::AddCouplings() noexcept {
+  for (int i = 0; i < hands(); ++i) {
+    const Hand& hand = hands_[i];
+    if (hand.slips) {
+      pose_.AddForces(hand.coupling.w(), &right_, i);
+    } else if (hand.coupled) {
+      pose_.ComputeWeightedJacobian(hand.coupling.root_gain(), &rootKJ_, i);
+      system_.AddGram(rootKJ_, &A_);
+      pose_.AddForces(hand.coupling.Given(), &right_, i);
+    }
+    if (hand.fading.acts()) pose_.AddForces(hand.fading.w(), &right_, i);
+  }
 }
 
-/// The coupling's wrench at the end of the step. True if it slips.
+/// The couplings' wrenches at the end of the step. True if one more slips.
 bool CoupledDynamics::Slip() noexcept {
-  return coupled_ && coupling_.Pull(pose_.Twist(next_v_));
+  bool more = false;
+  for (int i = 0; i < hands(); ++i) {
+    Hand& hand = hands_[i];
+    if (!hand.coupled || hand.slips) continue;
+    hand.slips = hand.coupling.Pull(pose_.Twist(next_v_, i));
+    more = more || hand.slips;
+  }
+  return more;
 }
 
 /// Velocities with the joints' limits; those that held last are tried first.
@@ -207,7 +262,8 @@ void CoupledDynamics::FindWrenches() noexcept {
   vdot_ = (next_v_ - v_) / T_;
   pose_.SetAccelerations(vdot_);
   system_.ComputeMultipliers(pose_.C(), d_, &mu_);
-  pose_.LoadJoints(coupling_.w(), mu_, &joints_);
+  for (int i = 0; i < hands(); ++i) w_[i] = hands_[i].coupling.w() + hands_[i].fading.w();
+  pose_.LoadJoints(w_, mu_, &joints_);
 }
 
 CoupledStatus CoupledDynamics::Move() noexcept {
@@ -226,7 +282,9 @@ CoupledStatus CoupledDynamics::Move() noexcept {
   system_.SetConstraints(pose_.C());
   UpdateInertia();
   UpdateVelocities();
-  if (!std::isfinite(Power(coupling_.w(), coupling_.w()))) return CoupledStatus::kFailed;
+  for (const Screw& w : w_) {
+    if (!std::isfinite(Power(w, w))) return CoupledStatus::kFailed;
+  }
   return closed ? CoupledStatus::kMoved : CoupledStatus::kStopped;
 }
 
@@ -242,30 +300,47 @@ void CoupledDynamics::UpdateVelocities() noexcept {
   kinetic_ = 0.5 * Dot(momenta_.data(), v_.data(), tree_.nv);
 }
 
-/// What the step has gained beyond the damper's work at most.
+/// What the step has gained beyond the dampers' work at most.
 void CoupledDynamics::LimitEnergyGain(double before) noexcept {
-  const double dragged = coupled_ ? coupling_.Dragged(pose_.Twist(v_)) : 0;
-  const double factor = energy_limit_.FactorOfVelocities(Energy() - before - dragged, kinetic_);
+  double gained = Energy() - before;
+  for (int i = 0; i < hands(); ++i) {
+    if (hands_[i].coupled) gained -= hands_[i].coupling.Dragged(pose_.Twist(v_, i));
+  }
+  const double factor = energy_limit_.FactorOfVelocities(gained, kinetic_);
   if (factor == 1) return;
   v_ *= factor;
   UpdateVelocities();
 }
 
 void CoupledDynamics::Stretch() noexcept {
-  coupling_.Stretch(pose_.grasp_frame(), hand_);
-  if (!coupled_) coupling_.LetGo();
+  for (int i = 0; i < hands(); ++i) {
+    Hand& hand = hands_[i];
+    hand.coupling.Stretch(pose_.grasp_frame(i), hand.at);
+    if (!hand.coupled) hand.coupling.LetGo();
+  }
+}
+
+double CoupledDynamics::Energy() const noexcept {
+  double energy = kinetic_ + potential_;
+  for (int i = 0; i < hands(); ++i) energy += CouplingEnergy(i);
+  return energy;
+}
+
+bool CoupledDynamics::slipping() const noexcept {
+  return std::any_of(hands_.begin(), hands_.end(),
+                     [](const Hand& hand) { return hand.coupling.slipping(); });
 }
 
 Vector6d CoupledDynamics::e1() const noexcept {
-  return Vector6Of(coupling_.e1());
+  return Vector6Of(stretch());
 }
 
-Vector6d CoupledDynamics::w() const noexcept {
-  return Vector6Of(coupling_.w());
+Vector6d CoupledDynamics::w(int hand) const noexcept {
+  return Vector6Of(w_[hand]);
 }
 
-Vector6d CoupledDynamics::V_WG() const noexcept {
-  return Vector6Of(pose_.Twist(v_));
+Vector6d CoupledDynamics::V_WG(int hand) const noexcept {
+  return Vector6Of(pose_.Twist(v_, hand));
 }
 
 }  // namespace vmech

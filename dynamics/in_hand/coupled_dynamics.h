@@ -1,9 +1,11 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "vmech/dynamics/in_hand/closing_step.h"
 #include "vmech/dynamics/in_hand/energy_limit.h"
+#include "vmech/dynamics/in_hand/fading_wrench.h"
 #include "vmech/dynamics/in_hand/passive_joints.h"
 #include "vmech/dynamics/in_hand/virtual_coupling.h"
 
@@ -16,9 +18,15 @@ enum class CoupledStatus {
   kFailed,   ///< a value is not finite; the pose stays, the wrenches are undefined
 };
 
-/// Forward dynamics of a mechanism that a hand holds by a spring and a damper: it moves by its own
-/// equations of motion, a step of T at a time, so that no acceleration of the hand is needed and
-/// every freedom takes part, whether the grasp reaches it or not [Colgate et al. 1995, virtual
+/// How a hand holds a mechanism.
+struct CoupledGrasp {
+  GraspFrame frame;
+  HandCoupling coupling;  ///< rotational rows do not count for a point grasp
+};
+
+/// Forward dynamics of a mechanism that hands hold, each by a spring and a damper: it moves by its
+/// own equations of motion, a step of T at a time, so that no acceleration of the hand is needed
+/// and every freedom takes part, whether the grasp reaches it or not [Colgate et al. 1995, virtual
 /// coupling]. With the hand's error e1 and twist V_H, coupling, joint springs, friction and limits
 /// taken at the end of the step,
 ///
@@ -29,58 +37,83 @@ enum class CoupledStatus {
 /// feels, -w, is the reaction of a mass that really moves. Implicit steps only lose energy; what
 /// centrifugal forces, taken at the start of the step, add beyond what was lost before is taken out
 /// of the velocities. Velocities and multipliers are those of a SaddleSystem; redundant loop
-/// equations need no care. No allocation after construction.
+/// equations need no care. Of several hands, J'w and the gains are sums. Where a hand is not named,
+/// the first is meant. No allocation after construction.
 class CoupledDynamics {
  public:
-  /// Keeps a reference to the tree. Rotational rows of the coupling do not count for a point grasp.
-  /// `step` [s] > 0; `q`: a closed pose. @throws std::invalid_argument as RefuseUnrenderedFriction,
-  /// or if the step or a gain is out of range.
+  /// Keeps a reference to the tree. `hands`: at least one. `step` [s] > 0; `q`: a closed pose.
+  /// @throws std::invalid_argument as RefuseUnrenderedFriction, or if the step or a gain is out of
+  /// range.
+  CoupledDynamics(const KinematicTree& tree, std::span<const CoupledGrasp> hands, double step,
+                  const VectorXd& q);
   CoupledDynamics(const KinematicTree& tree, const GraspFrame& grasp, const HandCoupling& coupling,
                   double step, const VectorXd& q);
 
-  /// At rest from now on.
+  /// At rest from now on; what fades is gone.
   void Stop() noexcept;
   /// Held at another frame of the same kind, or again after LetGo.
-  void GraspAt(const GraspFrame& grasp) noexcept;
-  /// Nobody holds it: the coupling exerts nothing until GraspAt.
-  void LetGo() noexcept;
+  void GraspAt(const GraspFrame& grasp, int hand = 0) noexcept;
+  /// The hand holds it no more: the coupling exerts nothing until GraspAt.
+  void LetGo(int hand = 0) noexcept;
+  /// The same, while what the coupling pulls fades, by `rate` [N/s] at most.
+  void Loosen(double rate, int hand = 0) noexcept;
   /// The largest wrench that may pull from now on, beside that of the coupling itself.
-  void Within(const WrenchLimit& room) noexcept { coupling_.Within(room); }
+  void Within(const WrenchLimit& room, int hand = 0) noexcept {
+    hands_[hand].coupling.Within(room);
+  }
   /// Energy [J] that the mechanism has and the hand did not give: the next step takes it out of the
   /// velocities, as far as they have it.
   void Owe(double energy) noexcept { energy_limit_.Owe(energy); }
-  /// A step with the hand at X_WH, moving with V_WH [v; w] at Ho, world axes; or with its frame in
-  /// W.
+  /// Where a hand is in the next step, and how it moves; it stays there.
+  void SetHand(const MovingFrame& frame, int hand = 0) noexcept { hands_[hand].at = frame; }
+  [[nodiscard]] CoupledStatus Step() noexcept;
+  /// A step with the first hand at X_WH, moving with V_WH [v; w] at Ho, world axes; or with its
+  /// frame in W.
   [[nodiscard]] CoupledStatus Step(const Posed& X_WH, const Vector6d& V_WH) noexcept;
   [[nodiscard]] CoupledStatus Step(const MovingFrame& hand) noexcept;
 
   // After the last step.
+  int hands() const noexcept { return static_cast<int>(hands_.size()); }
   const VectorXd& q() const noexcept { return q_; }
   auto v() const noexcept { return v_.head(tree_.nv); }
-  Posed X_WG() const noexcept { return pose_.X_WG(); }
+  Posed X_WG(int hand = 0) const noexcept { return pose_.X_WG(hand); }
   /// HandError of the hand [6; m, rad].
   Vector6d e1() const noexcept;
-  const Screw& stretch() const noexcept { return coupling_.e1(); }  ///< the same
+  /// The same.
+  const Screw& stretch(int hand = 0) const noexcept { return hands_[hand].coupling.e1(); }
   const GraspedMechanism& pose() const noexcept { return pose_; }
-  Vector6d V_WG() const noexcept;  ///< of Go, world axes [v; w]
-  /// Hand on mechanism during the step, at Go, world axes: what the coupling pulls.
-  Vector6d w() const noexcept;
-  const Screw& pull() const noexcept { return coupling_.w(); }  ///< the same
+  Vector6d V_WG(int hand = 0) const noexcept;  ///< of Go, world axes [v; w]
+  /// Hand on mechanism during the step, at Go, world axes: what the coupling pulls, and what of it
+  /// fades.
+  Vector6d w(int hand = 0) const noexcept;
+  const Screw& pull(int hand = 0) const noexcept { return w_[hand]; }  ///< the same
   /// Every joint's wrench during the step, as HandDynamics::joints.
   const std::vector<Wrenchd>& joints() const noexcept { return joints_; }
-  /// Kinetic energy, weight, springs of joints and coupling [J].
-  double Energy() const noexcept { return kinetic_ + potential_ + coupling_.energy(); }
-  double closure() const noexcept { return closing_.closure(); }   ///< loop errors, lengths over L
-  bool at_limit() const noexcept { return passive_.at_limit(); }   ///< a joint stands at one
-  bool slipping() const noexcept { return coupling_.slipping(); }  ///< it is at its largest wrench
+  /// Kinetic energy, weight, springs of joints and couplings [J].
+  double Energy() const noexcept;
+  /// Of a hand's spring, and of what fades of it [J].
+  double CouplingEnergy(int hand = 0) const noexcept {
+    return hands_[hand].coupling.energy() + hands_[hand].fading.energy();
+  }
+  double closure() const noexcept { return closing_.closure(); }  ///< loop errors, lengths over L
+  bool at_limit() const noexcept { return passive_.at_limit(); }  ///< a joint stands at one
+  bool slipping() const noexcept;  ///< a coupling is at its largest wrench
 
  private:
   enum class Solving { kFully, kRoughly };
+  struct Hand {
+    VirtualCoupling coupling;
+    FadingWrench fading;
+    MovingFrame at;
+    bool coupled = true;
+    bool slips = false;  // in this step: its wrench is given
+  };
 
   void AddRegularisation();
   void BiasForces() noexcept;
   void BuildSystem() noexcept;
-  void AddCoupling() noexcept;
+  void AddCouplings() noexcept;
+  void Fade() noexcept;
   bool SolveStep() noexcept;
   bool SolveWithLimits(Solving how) noexcept;
   bool SolveVelocity(Solving how) noexcept;
@@ -95,7 +128,7 @@ class CoupledDynamics {
   const KinematicTree& tree_;
   double T_;
   GraspedMechanism pose_;
-  VirtualCoupling coupling_;
+  std::vector<Hand> hands_;
   PassiveJoints passive_;
   SaddleSystem system_;
   ClosingStep closing_;
@@ -104,9 +137,8 @@ class CoupledDynamics {
   VectorXd q_, v_, next_q_, next_v_, vdot_, momenta_, bias_, right_, limited_right_, mu_, d_;
   VectorXd regularisation_;  // of every freedom [as M/T]: holds those without inertia
   std::vector<Wrenchd> joints_;
-  MovingFrame hand_;
-  double kinetic_ = 0, potential_ = 0;  // without the coupling's [J]
-  bool coupled_ = true;
+  std::vector<Screw> w_;                // of every hand
+  double kinetic_ = 0, potential_ = 0;  // without the couplings' [J]
 };
 
 }  // namespace vmech

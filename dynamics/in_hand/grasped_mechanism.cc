@@ -12,17 +12,18 @@
 
 namespace vmech {
 
-GraspedMechanism::GraspedMechanism(const KinematicTree& tree, const GraspFrame& grasp)
+GraspedMechanism::GraspedMechanism(const KinematicTree& tree, std::span<const GraspFrame> grasps)
     : tree_(tree),
-      grasp_(grasp),
       row_scale_(LoopRowScale(tree)),
       ws_(tree),
       inertias_(tree),
       joints_(tree.mechanism.joints.size()),
-      J_(tree.nv),
       C_(MatrixXd::Zero(PaddedSize(tree.rows), tree.nv)),
       e2_(VectorXd::Zero(C_.rows())) {
-  RequireNode("grasp.node", tree, grasp.node);
+  for (const GraspFrame& grasp : grasps) {
+    RequireNode("grasp.node", tree, grasp.node);
+    grasps_.push_back({grasp, {}, std::vector<Screw>(static_cast<size_t>(tree.nv))});
+  }
   SetGravity(tree.mechanism.gravity_W, &ws_);
 }
 
@@ -55,8 +56,10 @@ void GraspedMechanism::ScaleLoopErrors() noexcept {
 
 void GraspedMechanism::SetJacobians() noexcept {
   BodyInertias(tree_, ws_, &inertias_);
-  G_ = ws_.at(grasp_.node).X * grasp_.X_BG;
-  GraspJacobian(tree_, ws_, grasp_.node, G_, &J_);
+  for (Grasped& grasp : grasps_) {
+    grasp.G = ws_.at(grasp.frame.node).X * grasp.frame.X_BG;
+    GraspJacobian(tree_, ws_, grasp.frame.node, grasp.G, &grasp.J);
+  }
   LoopWrenches(tree_, row_scale_.data(), &ws_);
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
     const Loop& loop = tree_.loops[l];
@@ -68,23 +71,26 @@ void GraspedMechanism::SetJacobians() noexcept {
   }
 }
 
-Frame GraspedMechanism::grasp_frame() const noexcept {
-  return {G_.x, G_.y, G_.z, G_.p + Double4Of(ws_.reference)};
+Frame GraspedMechanism::grasp_frame(int hand) const noexcept {
+  const Frame& G = grasps_[hand].G;
+  return {G.x, G.y, G.z, G.p + Double4Of(ws_.reference)};
 }
 
-Posed GraspedMechanism::X_WG() const noexcept {
-  return PoseOf(grasp_frame());
+Posed GraspedMechanism::X_WG(int hand) const noexcept {
+  return PoseOf(grasp_frame(hand));
 }
 
 Matrix6Xd GraspedMechanism::J() const {
   Matrix6Xd J(6, tree_.nv);
-  for (int v = 0; v < tree_.nv; ++v) J.col(v) = Vector6Of(J_[v]);
+  for (int v = 0; v < tree_.nv; ++v) J.col(v) = Vector6Of(grasps_[0].J[v]);
   return J;
 }
 
-void GraspedMechanism::ComputeWeightedJacobian(const Screw& root, MatrixXd* B) const noexcept {
+void GraspedMechanism::ComputeWeightedJacobian(const Screw& root, MatrixXd* B,
+                                               int hand) const noexcept {
+  const std::vector<Screw>& J = grasps_[hand].J;
   for (int i = 0; i < tree_.nv; ++i) {
-    const Screw column = Scaled(root, J_[i]);
+    const Screw column = Scaled(root, J[i]);
     StoreDouble4(column.linear, &(*B)(0, i));
     StoreDouble4(column.angular, &(*B)(4, i));
   }
@@ -94,14 +100,16 @@ Posed GraspedMechanism::X_WB(int node) const noexcept {
   return PoseInWorld(ws_, node, {});
 }
 
-Screw GraspedMechanism::Twist(const VectorXd& v) const noexcept {
+Screw GraspedMechanism::Twist(const VectorXd& v, int hand) const noexcept {
+  const std::vector<Screw>& J = grasps_[hand].J;
   Screw V;
-  for (int i = 0; i < tree_.nv; ++i) V += v[i] * J_[i];
+  for (int i = 0; i < tree_.nv; ++i) V += v[i] * J[i];
   return V;
 }
 
-void GraspedMechanism::AddForces(const Screw& w, VectorXd* tau) const noexcept {
-  for (int i = 0; i < tree_.nv; ++i) (*tau)[i] += Power(w, J_[i]);
+void GraspedMechanism::AddForces(const Screw& w, VectorXd* tau, int hand) const noexcept {
+  const std::vector<Screw>& J = grasps_[hand].J;
+  for (int i = 0; i < tree_.nv; ++i) (*tau)[i] += Power(w, J[i]);
 }
 
 void GraspedMechanism::ComputeMassMatrix(MatrixXd* M) noexcept {
@@ -130,9 +138,10 @@ void GraspedMechanism::ComputeLoopBias(double s, VectorXd* d) noexcept {
 }
 
 Screw GraspedMechanism::GraspBias() const noexcept {
-  const TreeWorkspace<double>::Node& node = ws_.at(grasp_.node);
+  const Grasped& grasp = grasps_[0];
+  const TreeWorkspace<double>::Node& node = ws_.at(grasp.frame.node);
   const Screw A = node.A - ws_.at(-1).A;
-  const Double4 a = VelocityAt(G_.p, A) + Cross(node.V.angular, VelocityAt(G_.p, node.V));
+  const Double4 a = VelocityAt(grasp.G.p, A) + Cross(node.V.angular, VelocityAt(grasp.G.p, node.V));
   return {a, A.angular};
 }
 
@@ -147,7 +156,7 @@ void GraspedMechanism::ComputeForces(VectorXd* tau) noexcept {
   has_forces_ = true;
 }
 
-void GraspedMechanism::LoadJoints(const Screw& w, const VectorXd& mu,
+void GraspedMechanism::LoadJoints(std::span<const Screw> w, const VectorXd& mu,
                                   std::vector<Wrenchd>* joints) noexcept {
   StartLoads(w);
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
@@ -159,7 +168,7 @@ void GraspedMechanism::LoadJoints(const Screw& w, const VectorXd& mu,
   FinishLoads(joints);
 }
 
-void GraspedMechanism::LoadJoints(const Screw& w, const std::vector<Screw>& cut,
+void GraspedMechanism::LoadJoints(std::span<const Screw> w, const std::vector<Screw>& cut,
                                   std::vector<Wrenchd>* joints) noexcept {
   StartLoads(w);
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
@@ -168,10 +177,13 @@ void GraspedMechanism::LoadJoints(const Screw& w, const std::vector<Screw>& cut,
   FinishLoads(joints);
 }
 
-void GraspedMechanism::StartLoads(const Screw& w) noexcept {
+void GraspedMechanism::StartLoads(std::span<const Screw> w) noexcept {
   if (!has_forces_) NewtonEuler<double>(tree_, inertias_, nullptr, &ws_, nullptr);
   has_forces_ = false;
-  ApplyAlongBranch(tree_, grasp_.node, WrenchAt(G_.p, w.linear, w.angular), &ws_);
+  for (size_t i = 0; i < grasps_.size(); ++i) {
+    const Grasped& grasp = grasps_[i];
+    ApplyAlongBranch(tree_, grasp.frame.node, WrenchAt(grasp.G.p, w[i].linear, w[i].angular), &ws_);
+  }
 }
 
 void GraspedMechanism::LoadLoop(const Loop& loop, const Screw& W) noexcept {

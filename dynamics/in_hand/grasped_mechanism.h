@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "vmech/dynamics/reactions/joint_wrenches.h"
@@ -8,17 +9,20 @@
 
 namespace vmech {
 
-/// A mechanism in a hand at one pose, with memory: the grasp's Jacobian J, the loops' C, and what
-/// the joints carry. The common ground of HandDynamics and CoupledDynamics. Nothing allocates after
-/// construction.
+/// A mechanism in a hand, or in several, at one pose, with memory: the grasps' Jacobians J, the
+/// loops' C, and what the joints carry. The common ground of HandDynamics and CoupledDynamics.
+/// Where a hand is not named, the first is meant. Nothing allocates after construction.
 class GraspedMechanism {
  public:
-  /// Keeps a reference to the tree.
-  GraspedMechanism(const KinematicTree& tree, const GraspFrame& grasp);
+  /// Keeps a reference to the tree. `grasps`: of a hand each, at least one.
+  GraspedMechanism(const KinematicTree& tree, std::span<const GraspFrame> grasps);
+  GraspedMechanism(const KinematicTree& tree, const GraspFrame& grasp)
+      : GraspedMechanism(tree, std::span(&grasp, 1)) {}
 
+  int hands() const noexcept { return static_cast<int>(grasps_.size()); }
   /// Another grasp frame, from the next Set on.
-  void SetGrasp(const GraspFrame& grasp) noexcept { grasp_ = grasp; }
-  const GraspFrame& grasp() const noexcept { return grasp_; }
+  void SetGrasp(const GraspFrame& grasp, int hand = 0) noexcept { grasps_[hand].frame = grasp; }
+  const GraspFrame& grasp(int hand = 0) const noexcept { return grasps_[hand].frame; }
 
   /// Takes q [nq].
   void Set(const VectorXd& q) noexcept;
@@ -29,19 +33,20 @@ class GraspedMechanism {
   /// The other half: grasp frame, Jacobians and inertias.
   void SetJacobians() noexcept;
 
-  Posed X_WG() const noexcept;
-  Frame grasp_frame() const noexcept;  ///< the same
+  Posed X_WG(int hand = 0) const noexcept;
+  Frame grasp_frame(int hand = 0) const noexcept;  ///< the same
   Posed X_WB(int node) const noexcept;
   Matrix6Xd J() const;  ///< [6, nv], V_WG = J v
   /// B [8, nv] = root J with zeros below either three rows: B'B = J' root^2 J.
-  void ComputeWeightedJacobian(const Screw& root, MatrixXd* B) const noexcept;
+  void ComputeWeightedJacobian(const Screw& root, MatrixXd* B, int hand = 0) const noexcept;
   /// [rows, nv], C v = 0; lengths over the characteristic length, padded with rows of zeros.
   const MatrixXd& C() const noexcept { return C_; }
   const VectorXd& e2() const noexcept { return e2_; }  ///< loop errors, scaled and padded like C
 
   // Twists and wrenches of the grasp frame: about Go.
-  Screw Twist(const VectorXd& v) const noexcept;                 ///< J v
-  void AddForces(const Screw& w, VectorXd* tau) const noexcept;  ///< tau += J'w
+  Screw Twist(const VectorXd& v, int hand = 0) const noexcept;  ///< J v
+  /// tau += J'w
+  void AddForces(const Screw& w, VectorXd* tau, int hand = 0) const noexcept;
 
   /// M [nv, nv], which was zero in the beginning.
   void ComputeMassMatrix(MatrixXd* M) noexcept;
@@ -62,13 +67,14 @@ class GraspedMechanism {
   /// M v' + h [nv].
   void ComputeForces(VectorXd* tau) noexcept;
   /// Joint by joint of the mechanism, what the first link exerts on the second about the second
-  /// anchor's origin, axes of the first anchor, while a hand exerts w at Go and the loops the
-  /// multipliers of M v' + h = J' w - C' mu.
-  void LoadJoints(const Screw& w, const VectorXd& mu, std::vector<Wrenchd>* joints) noexcept;
+  /// anchor's origin, axes of the first anchor, while every hand exerts its w at its Go and the
+  /// loops the multipliers of M v' + h = J' w - C' mu.
+  void LoadJoints(std::span<const Screw> w, const VectorXd& mu,
+                  std::vector<Wrenchd>* joints) noexcept;
 
   /// The same where the cut joints exert `cut` on their second links, each about the origin of its
   /// second anchor, world axes.
-  void LoadJoints(const Screw& w, const std::vector<Screw>& cut,
+  void LoadJoints(std::span<const Screw> w, const std::vector<Screw>& cut,
                   std::vector<Wrenchd>* joints) noexcept;
 
   // A loop cut through, paper eq. (4) to (6), about the origin of the cut joint's second anchor.
@@ -81,19 +87,23 @@ class GraspedMechanism {
   double WeightEnergy() const noexcept { return vmech::WeightEnergy(tree_, inertias_); }
 
  private:
+  struct Grasped {
+    GraspFrame frame;
+    Frame G;               // about the reference point
+    std::vector<Screw> J;  // columns
+  };
+
   void ScaleLoopErrors() noexcept;
-  void StartLoads(const Screw& w) noexcept;
+  void StartLoads(std::span<const Screw> w) noexcept;
   void LoadLoop(const Loop& loop, const Screw& W) noexcept;
   void FinishLoads(std::vector<Wrenchd>* joints) noexcept;
 
   const KinematicTree& tree_;
-  GraspFrame grasp_;
+  std::vector<Grasped> grasps_;
   VectorXd row_scale_;
   TreeWorkspace<double> ws_;
   TreeInertias<double> inertias_;
   std::vector<JointState<double>> joints_;
-  Frame G_;               // about the reference point
-  std::vector<Screw> J_;  // columns
   MatrixXd C_;
   VectorXd e2_;
   bool has_forces_ = false;  // ws_ has the F of the accelerations in it

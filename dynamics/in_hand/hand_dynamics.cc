@@ -146,7 +146,8 @@ bool HandDynamics::Evaluate(const VectorXd& v, const VectorXd& u, const VectorXd
   if (curved_ && FactorWithoutCurvature()) FindWrench();
   system_.ComputeMultipliers(pose_.C(), zero_, &mu_);
   mu_ = -mu_;
-  pose_.LoadJoints(ScrewOf(w_d_), mu_, &joints_);
+  const Screw w = ScrewOf(w_d_);
+  pose_.LoadJoints({&w, 1}, mu_, &joints_);
   w_d_ = felt;
   return w_d_.allFinite();
 }
@@ -177,7 +178,8 @@ void HandDynamics::FindPaperWrench() noexcept {
   paper_system_.SolveOnce(pose_.C(), tau_, zero_, &x_);
   w_d_ = rows.cwiseProduct(Vector6Of(pose_.Twist(x_)));
   for (size_t l = 0; l < cut_.size(); ++l) cut_[l] = pose_.CutTwist(static_cast<int>(l), x_);
-  pose_.LoadJoints(ScrewOf(w_d_), cut_, &joints_);
+  const Screw w = ScrewOf(w_d_);
+  pose_.LoadJoints({&w, 1}, cut_, &joints_);
 }
 
 Vector6d HandDynamics::Twist(const VectorXd& v) const noexcept {

@@ -36,6 +36,7 @@ class VirtualCoupling {
   /// stopped: its energy would grow by what nobody pays.
   void Within(const WrenchLimit& room) noexcept { room_ = room; }
 
+  const Screw& stiffness() const noexcept { return stiffness_; }  ///< K
   const Screw& root_gain() const noexcept { return root_gain_; }  ///< (B + T K)^1/2
   /// K e1 + B V_H: what does not depend on the motion to come.
   Screw Given() const noexcept;

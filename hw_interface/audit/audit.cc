@@ -102,7 +102,6 @@ struct RecordingAudit::Parts {
       : held(header),
         promise(PromiseOf(header)),
         period(header.period),
-        coupling(promise.coupling, held.grasp.kind, header.period),
         passive(held.tree),
         before(held.tree),
         now(held.tree),
@@ -114,7 +113,23 @@ struct RecordingAudit::Parts {
         wanted("wrench from the mechanism to the safety filter, off by", kExact, "-"),
         sent("wrench from the filter to the device, off by", kExact, "-"),
         free("constraints along free motions, share of the largest wrench", kConstraint, "-"),
-        newton("force balance of every link, share of the largest", kNewton, "-") {}
+        newton("force balance of every link, share of the largest", kNewton, "-") {
+    for (int i = 0; i < header.hands(); ++i) {
+      hands.push_back({held.grasps[i],
+                       VirtualCoupling(PromiseOf(header, i).coupling, held.grasps[i].kind, period),
+                       {}});
+    }
+  }
+
+  /// A hand on the mechanism.
+  struct Hand {
+    GraspFrame grasp;
+    VirtualCoupling coupling;
+    Posed X_WG_before;
+    bool held = false;  // once
+    bool let_go = false;
+    bool late = false;  // it has closed on a link that moved, and its frame slid along
+  };
 
   void Take(const TickRecord& tick);
   void JudgePose(const TickRecord& tick);
@@ -128,8 +143,7 @@ struct RecordingAudit::Parts {
   RecordedTree held;
   SessionPromise promise;
   double period;
-  VirtualCoupling coupling;
-  Posed last_X_WG;
+  std::vector<Hand> hands;
   PassiveJoints passive;
   MechanismState before, now;
   std::vector<Screw> net;  // on every node; node i at i + 1
@@ -138,16 +152,26 @@ struct RecordingAudit::Parts {
   double joint_work = 0;  // of this tick [J]
   double first_kinetic = 0, first_weight = 0;
   double largest_force = 0;
-  Posed X_WG_before;
   std::uint64_t ticks = 0;
   bool started = false, follows = false;
 };
 
 /// Before the first sample there is no mechanism in hand.
 void RecordingAudit::Parts::Take(const TickRecord& tick) {
-  if (!started && tick.io != IoStatus::kOk) {
+  const auto& others = tick.others;
+  const bool has_come = tick.io == IoStatus::kOk ||
+                        std::any_of(others.begin(), others.end(), [](const HandRecord& other) {
+                          return other.io == IoStatus::kOk;
+                        });
+  if (!started && !has_come) {
     ++ticks;
     return;
+  }
+  for (size_t i = 0; i < hands.size(); ++i) {
+    const bool holds = tick.picture.hand(static_cast<int>(i)).holds;
+    hands[i].let_go = hands[i].let_go || (hands[i].held && !holds);
+    hands[i].late = hands[i].late || (started && holds && !hands[i].held);
+    hands[i].held = hands[i].held || holds;
   }
   now.Set(held.tree, tick.picture);
   JudgePose(tick);
@@ -161,49 +185,69 @@ void RecordingAudit::Parts::Take(const TickRecord& tick) {
     first_weight = now.weight;
   }
   started = true;
-  X_WG_before = tick.picture.X_WG;
+  for (size_t i = 0; i < hands.size(); ++i) {
+    hands[i].X_WG_before = tick.picture.hand(static_cast<int>(i)).X_WG;
+  }
   std::swap(before, now);
   ++ticks;
 }
 
 void RecordingAudit::Parts::JudgePose(const TickRecord& tick) {
-  const TickPicture& picture = tick.picture;
   loops.Add(now.closure, ticks);
-  if (!held.regrasps) {
-    const Posed X_WG = PoseInWorld(now.ws, held.grasp.node, held.grasp.X_BG);
-    grasp.Add(Distance(X_WG, picture.X_WG), ticks);
+  for (size_t i = 0; i < hands.size(); ++i) {
+    const int index = static_cast<int>(i);
+    const HandPicture& picture = tick.picture.hand(index);
+    const HandRecord& record = tick.of_hand(index);
+    if (!held.regrasps && !hands[i].late) {
+      const Posed X_WG = PoseInWorld(now.ws, hands[i].grasp.node, hands[i].grasp.X_BG);
+      grasp.Add(Distance(X_WG, picture.X_WG), ticks);
+    }
+    if (!picture.holds && hands.size() > 1) continue;
+    const Posed& X_DH = record.observed ? record.hand.X_DH : record.state.X_DH;
+    hand.Add(Distance(record.registration.HandInWorld(X_DH), picture.X_WH), ticks);
   }
-  const Posed& X_DH = tick.observed ? tick.hand.X_DH : tick.state.X_DH;
-  hand.Add(Distance(tick.registration.HandInWorld(X_DH), picture.X_WH), ticks);
 }
 
-/// That of the virtual coupling, whose spring remembers where it slips. In the paper's way the
-/// share of the inertia goes with the pose, and the recording does not have it.
+/// That of the virtual coupling, whose spring remembers where it slips; of several hands the sum of
+/// what they have stored, as long as none has let go. In the paper's way the share of the inertia
+/// goes with the pose, and the recording does not have it.
 void RecordingAudit::Parts::JudgeStoredEnergy(const TickRecord& tick) {
   if (!promise.known || promise.paper || held.regrasps) return;
-  const MovingFrame hand_W{FrameOf(tick.picture.X_WH), {}};
-  coupling.Within(tick.room.Times(1 / promise.scale));
-  if (ticks > 0) coupling.Stretch(FrameOf(last_X_WG), hand_W);
-  coupling.Stretch(FrameOf(tick.picture.X_WG), hand_W);
-  last_X_WG = tick.picture.X_WG;
-  const double springs = passive.Energy(tick.picture.q);
-  const double own = promise.scale * (now.kinetic + now.weight + springs + coupling.energy());
+  double own = now.kinetic + now.weight + passive.Energy(tick.picture.q), told = 0;
+  bool all_hold = true;
+  for (size_t i = 0; i < hands.size(); ++i) {
+    Hand& hand = hands[i];
+    const HandPicture& picture = tick.picture.hand(static_cast<int>(i));
+    const HandRecord& record = tick.of_hand(static_cast<int>(i));
+    told += record.stored_energy;
+    all_hold = all_hold && !hand.let_go && !hand.late;
+    if (!picture.holds) continue;
+    const MovingFrame hand_W{FrameOf(picture.X_WH), {}};
+    hand.coupling.Within(record.room.Times(1 / promise.scale));
+    if (started) hand.coupling.Stretch(FrameOf(hand.X_WG_before), hand_W);
+    hand.coupling.Stretch(FrameOf(picture.X_WG), hand_W);
+    own += hand.coupling.energy();
+  }
+  own *= promise.scale;
   const double size = std::abs(now.kinetic) + std::abs(now.weight) + std::abs(own);
-  stored.Add(std::abs(own - tick.stored_energy) / std::max(size, 1e-6), ticks);
+  if (all_hold) stored.Add(std::abs(own - told) / std::max(size, 1e-6), ticks);
 }
 
 void RecordingAudit::Parts::JudgeWrenches(const TickRecord& tick) {
-  const TickPicture& picture = tick.picture;
-  if (promise.known && !held.regrasps) {
-    const Vector6d F_W = -promise.scale * (picture.dynamic + picture.constraint);
-    const Matrix3d R_DW = tick.registration.X_WD.R.transpose();
-    Vector6d F_D;
-    F_D << R_DW * F_W.head<3>(), R_DW * F_W.tail<3>();
-    const double off = (F_D - tick.wanted_F_Ho_D).cwiseAbs().maxCoeff();
-    wanted.Add(off / std::max(1.0, F_D.cwiseAbs().maxCoeff()), ticks);
+  for (size_t i = 0; i < hands.size(); ++i) {
+    const HandPicture& picture = tick.picture.hand(static_cast<int>(i));
+    const HandRecord& record = tick.of_hand(static_cast<int>(i));
+    if (promise.known && !held.regrasps && picture.holds) {
+      const Vector6d F_W = -promise.scale * (picture.dynamic + picture.constraint);
+      const Matrix3d R_DW = record.registration.X_WD.R.transpose();
+      Vector6d F_D;
+      F_D << R_DW * F_W.head<3>(), R_DW * F_W.tail<3>();
+      const double off = (F_D - record.wanted_F_Ho_D).cwiseAbs().maxCoeff();
+      wanted.Add(off / std::max(1.0, F_D.cwiseAbs().maxCoeff()), ticks);
+    }
+    if (record.stages != 0 || record.off != ForceOff::kNone) continue;
+    sent.Add((record.sent_F_Ho_D - record.wanted_F_Ho_D).cwiseAbs().maxCoeff(), ticks);
   }
-  if (tick.stages != 0 || tick.off != ForceOff::kNone) return;
-  sent.Add((tick.sent_F_Ho_D - tick.wanted_F_Ho_D).cwiseAbs().maxCoeff(), ticks);
 }
 
 /// Along the freedoms of a cut joint, which the tree does not have.
@@ -268,9 +312,12 @@ void RecordingAudit::Parts::JudgeJoints(const TickRecord& tick) {
 void RecordingAudit::Parts::JudgeLinks(const TickRecord& tick, const MechanismState& at) {
   if (promise.paper || held.regrasps) return;
   const KinematicTree& tree = held.tree;
-  const Vector3d p_Go = X_WG_before.p - tree.reference;
-  net[held.grasp.node + 1] += WrenchAt(Double4Of(p_Go), Double4Of(tick.picture.dynamic.head<3>()),
-                                       Double4Of(tick.picture.dynamic.tail<3>()));
+  for (size_t i = 0; i < hands.size(); ++i) {
+    const Vector6d& w = tick.picture.hand(static_cast<int>(i)).dynamic;
+    const Vector3d p_Go = hands[i].X_WG_before.p - tree.reference;
+    net[hands[i].grasp.node + 1] +=
+        WrenchAt(Double4Of(p_Go), Double4Of(w.head<3>()), Double4Of(w.tail<3>()));
+  }
   double most = 0;
   for (size_t i = 0; i < tree.nodes.size(); ++i) {
     const ScrewInertia& body = at.inertias.bodies[i + 1];
@@ -284,10 +331,12 @@ void RecordingAudit::Parts::JudgeLinks(const TickRecord& tick, const MechanismSt
 }
 
 void RecordingAudit::Parts::Balance(const TickRecord& tick) {
-  const Vector6d way = HandError(X_WG_before, tick.picture.X_WG);
-  const double work = tick.picture.dynamic.dot(way);
-  energy.hand += work;
-  energy.throughput += std::abs(work);
+  for (size_t i = 0; i < hands.size(); ++i) {
+    const HandPicture& picture = tick.picture.hand(static_cast<int>(i));
+    const double work = picture.dynamic.dot(HandError(hands[i].X_WG_before, picture.X_WG));
+    energy.hand += work;
+    energy.throughput += std::abs(work);
+  }
   energy.joints -= joint_work;
   const double share = promise.paper ? promise.inertia : 1;
   energy.kinetic = share * (now.kinetic - first_kinetic);

@@ -147,9 +147,16 @@ struct BlockPose {
 /// What is summed up over the ticks of a block.
 struct BlockMeans {
   Vector6d exerted = Vector6d::Zero(), told = Vector6d::Zero(), stretch = Vector6d::Zero();
+  double share = 0;  // of the inertia that was rendered
   int ticks = 0;
   bool whole = true;  // nothing was withheld
 };
+
+/// Where the paper's way says what share of the inertia it renders; -1 where all of it is.
+int ChannelOfShare(const std::vector<std::string>& channels) {
+  const auto found = std::find(channels.begin(), channels.end(), "inertia_share");
+  return found == channels.end() ? -1 : static_cast<int>(found - channels.begin());
+}
 
 Vector6d InWorld(const Matrix3d& R_WD, const Vector6d& F_D) {
   Vector6d F_W;
@@ -164,6 +171,7 @@ struct FeltFit::Parts {
       : held(mechanism),
         promise(PromiseOf(header)),
         period(header.period),
+        share_channel(ChannelOfShare(header.channels)),
         block_ticks(std::max(1, static_cast<int>(std::lround(kBlock / period)))),
         step(block_ticks * period),
         device_delay(header.delay),
@@ -193,6 +201,7 @@ struct FeltFit::Parts {
   const RecordedTree& held;
   SessionPromise promise;
   double period;
+  int share_channel;
   int block_ticks;
   double step, device_delay;
   Vector6d length, K;
@@ -210,6 +219,8 @@ struct FeltFit::Parts {
   LeastSquares<2> against_fit, late_fit;
   FeltReport report;
   Vector6d sent = Vector6d::Zero(), sent_before = Vector6d::Zero();  // of the last two ticks
+  double shares = 0;                                                 // of all blocks that count
+  std::uint64_t shared = 0;
   double noise = 0;
   std::uint64_t noisy_ticks = 0;
   bool senses = false;
@@ -237,6 +248,7 @@ void FeltFit::Parts::Take(const TickRecord& tick) {
   block.told += told;
   block.exerted += senses ? InWorld(R_WD, tick.state.applied_F_Ho_D) : told;
   block.stretch += HandError(tick.picture.X_WG, tick.picture.X_WH);
+  block.share += share_channel < 0 ? 1 : tick.channels[static_cast<size_t>(share_channel)];
   block.whole = block.whole && tick.off == ForceOff::kNone && !(tick.stages & kRamped) &&
                 tick.picture.holds && tick.io == IoStatus::kOk && tick.skipped == 0;
   sent_before = sent;
@@ -257,6 +269,7 @@ void FeltFit::Parts::EndBlock(const TickRecord& tick) {
   means.exerted *= share;
   means.told *= share;
   means.stretch *= share;
+  means.share *= share;
   std::swap(pose, last_pose);
   pose.sound = pose.Set(held.tree, held.grasp, K, tick.picture.q);
   const Posed X_WH_before = X_WH;
@@ -284,7 +297,9 @@ void FeltFit::Parts::FitAlong(const Vector6d& F) {
   BlockPose& at = last_pose;
   const MatrixXd Pt = at.P.transpose();
   const VectorXd mean_v = 0.5 * (v + last_v), zero = VectorXd::Zero(tree.nv);
-  const Vector6d inertia = Pt * at.Forces(tree, Vector3d::Zero(), mean_v, (v - last_v) / step);
+  const double share = 0.5 * (means.share + last_means.share);
+  const Vector6d inertia =
+      share * Pt * at.Forces(tree, Vector3d::Zero(), mean_v, (v - last_v) / step);
   const Vector6d weight = Pt * at.Forces(tree, tree.mechanism.gravity_W, zero, zero);
   VectorXd springs = zero;
   passive.AddForces(at.q, mean_v, &springs);
@@ -295,7 +310,10 @@ void FeltFit::Parts::FitAlong(const Vector6d& F) {
   x.col(1) = along[1](weight.cwiseQuotient(length));
   x.col(2) = along[2](drag.cwiseQuotient(length));
   const Vector6d filtered = along[3](y.cwiseQuotient(length));
-  if (settled * step > kSettling) along_fit.Add(x, filtered);
+  if (settled * step <= kSettling) return;
+  along_fit.Add(x, filtered);
+  shares += share;
+  ++shared;
 }
 
 void FeltFit::Parts::FitAgainst(const Vector6d& F) {
@@ -336,6 +354,7 @@ FeltReport FeltFit::Report() const {
   const Parts& p = *parts_;
   FeltReport report = p.report;
   report.period = p.period;
+  if (p.shared > 0) report.share = p.shares / static_cast<double>(p.shared);
   const double repeated = std::max(1.0, 1 / (2 * kBandwidth * p.step));
   report.inertia = p.along_fit.Fit(0, p.promise.inertia, repeated);
   report.weight = p.along_fit.Fit(1, 1, repeated);

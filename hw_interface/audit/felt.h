@@ -11,15 +11,16 @@ namespace vmech {
 /// Fits what a hand felt in a session to how it moved, by least squares in memory that does not
 /// grow: along the free motions, whose basis is N, and against the constraints,
 ///
-///   P'J'(-F)/s = a P'(M v' + c) + g P'h + b P'J'D J v + P'tau_p,    v = P V_H,
+///   P'J'(-F)/s = a S P'(M v' + c) + g P'h + b P'J'D J v + P'tau_p,    v = P V_H,
 ///   (1 - P'J')(-F) = k K e1 + r e1',        P = N (N'J'K J N)^-1 N'J'K,
 ///
 /// F what the device exerted on the hand, V_H the hand's twist, v' by differences, M v' + c and h
 /// the mechanism's inertia and weight, tau_p springs and friction of its joints, e1 from grasp to
-/// hand, s the scale. Both sides go through the same low-pass filter of some 15 Hz, so that what
-/// they have in common is not changed by it. P comes from the recorded pose; soft start and ticks
-/// without force are left out. Calibrated wrenches are needed: where the device does not sense what
-/// it exerts, it is taken to do what it is told.
+/// hand, s the scale, S the share of the inertia that the paper's way renders at the pose, else 1.
+/// Both sides go through the same low-pass filter of some 15 Hz, so that what they have in common
+/// is not changed by it. P comes from the recorded pose; soft start and ticks without force are
+/// left out. Calibrated wrenches are needed: where the device does not sense what it exerts, it is
+/// taken to do what it is told.
 class FeltFit : public TickListener {
  public:
   /// Keeps a reference to the mechanism.

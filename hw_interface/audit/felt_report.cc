@@ -39,7 +39,10 @@ std::string Against(const Felt& felt) {
 std::string FeltReport::Text() const {
   constexpr double kPercent = 100, kMilli = 1e3;
   std::string text = "  felt, fitted to this session\n";
-  text += Line("  inertia", inertia, inertia.promised, kPercent, "% of the mechanism's");
+  const std::string whose =
+      share < 1 - 1e-9 ? fmt::format("% of the share rendered, {:.3g} % on average", 100 * share)
+                       : "% of the mechanism's";
+  text += Line("  inertia", inertia, inertia.promised, kPercent, whose.c_str());
   text += Line("  weight", weight, weight.promised, kPercent, "% of the mechanism's");
   text += Line("  damping, free motion", damping, 10, 1, "N s/m");
   text += Line("  stiffness, constraints", stiffness, stiffness.promised, 1, "N/m");

@@ -20,13 +20,14 @@ struct Felt {
 struct FeltReport {
   std::uint64_t ticks = 0;
   double period = 1e-3;
-  Felt inertia;               ///< felt along the free motion, over the mechanism's own [-]
-  Felt weight;                ///< the same of its weight [-]
-  Felt damping;               ///< felt along the free motion beyond the mechanism's own [N s/m]
-  Felt stiffness;             ///< against the constraints [N/m]
-  Felt resistance;            ///< damping against the constraints [N s/m]
-  Felt delay;                 ///< from a command to its wrench at the handle [s]
-  double noise = 0;           ///< of the force sent: RMS of what is new in every tick [N]
+  double share = 1;  ///< of the inertia that was rendered, on average [-]
+  Felt inertia;      ///< felt along the free motion, over that share of the mechanism's [-]
+  Felt weight;       ///< the same of its weight [-]
+  Felt damping;      ///< felt along the free motion beyond the mechanism's own [N s/m]
+  Felt stiffness;    ///< against the constraints [N/m]
+  Felt resistance;   ///< damping against the constraints [N s/m]
+  Felt delay;        ///< from a command to its wrench at the handle [s]
+  double noise = 0;  ///< of the force sent: RMS of what is new in every tick [N]
   double largest_change = 0;  ///< of the force sent, from a tick to the next [N]
   static constexpr int kCauses = 16;
   std::array<std::uint64_t, kCauses> off{};           ///< ticks without force, by ForceOff

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <string_view>
 
 namespace vmech {
 namespace {
@@ -16,7 +17,7 @@ constexpr std::array<Gain, 2> kRows{{{"", 0}, {"_angular", 3}}};
 
 }  // namespace
 
-RecordingNotes NotesOf(const SessionPromise& promise) {
+RecordingNotes NotesOf(const SessionPromise& promise, int hand) {
   const HandCoupling& coupling = promise.coupling;
   RecordingNotes notes{{"felt_scale", fmt::to_string(promise.scale)},
                        {"felt_inertia", fmt::to_string(promise.inertia)},
@@ -27,23 +28,25 @@ RecordingNotes NotesOf(const SessionPromise& promise) {
                        fmt::to_string(coupling.stiffness[row]));
     notes.emplace_back(fmt::format("felt_damping{}", key), fmt::to_string(coupling.damping[row]));
   }
+  for (auto& [key, text] : notes) key = RecordingHeader::KeyOf(key, hand);
   return notes;
 }
 
-SessionPromise PromiseOf(const RecordingHeader& header) {
+SessionPromise PromiseOf(const RecordingHeader& header, int hand) {
+  const auto number = [&](std::string_view key, double otherwise) {
+    return header.Number(RecordingHeader::KeyOf(key, hand), otherwise);
+  };
   SessionPromise promise;
   promise.paper = header.Note("coupling") == "paper";
-  promise.known = !header.Note("felt_scale").empty();
-  promise.scale = header.Number("felt_scale", 1);
-  promise.inertia = header.Number("felt_inertia", 1);
+  promise.known = !header.Note(RecordingHeader::KeyOf("felt_scale", hand)).empty();
+  promise.scale = number("felt_scale", 1);
+  promise.inertia = number("felt_inertia", 1);
   HandCoupling& coupling = promise.coupling;
-  coupling.max_force = header.Number("felt_max_force", coupling.max_force);
-  coupling.max_moment = header.Number("felt_max_moment", coupling.max_moment);
+  coupling.max_force = number("felt_max_force", coupling.max_force);
+  coupling.max_moment = number("felt_max_moment", coupling.max_moment);
   for (const auto& [key, row] : kRows) {
-    coupling.stiffness.segment<3>(row).setConstant(
-        header.Number(fmt::format("felt_stiffness{}", key), 0));
-    coupling.damping.segment<3>(row).setConstant(
-        header.Number(fmt::format("felt_damping{}", key), 0));
+    coupling.stiffness.segment<3>(row).setConstant(number(fmt::format("felt_stiffness{}", key), 0));
+    coupling.damping.segment<3>(row).setConstant(number(fmt::format("felt_damping{}", key), 0));
   }
   return promise;
 }

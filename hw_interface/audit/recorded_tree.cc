@@ -30,11 +30,16 @@ RecordedTree::RecordedTree(const RecordingHeader& header)
     : tree(TreeOf(header)),
       grasp_index(FindGrasp(tree.mechanism, header.Note("grasp"))),
       regrasps(header.Number("gripper", 0) != 0) {
-  if (grasp_index < 0) {
-    throw std::invalid_argument(
-        fmt::format("the recorded mechanism has no grasp '{}'", header.Note("grasp")));
+  for (int hand = 0; hand < header.hands(); ++hand) {
+    const std::string name = header.Note(RecordingHeader::KeyOf("grasp", hand));
+    const int index = FindGrasp(tree.mechanism, name);
+    if (index < 0) {
+      throw std::invalid_argument(fmt::format("the recorded mechanism has no grasp '{}'", name));
+    }
+    grasp_indices.push_back(index);
+    grasps.push_back(GraspFrameOf(tree, index));
   }
-  grasp = GraspFrameOf(tree, grasp_index);
+  grasp = grasps.front();
   const RecordedMechanism& names = header.mechanism;
   const bool fits = static_cast<int>(names.coordinates.size()) == tree.nq &&
                     static_cast<int>(names.velocities.size()) == tree.nv &&
@@ -43,7 +48,12 @@ RecordedTree::RecordedTree(const RecordingHeader& header)
 }
 
 RecordedTree::RecordedTree(const KinematicTree& held, int index, bool gripper)
-    : tree(held), grasp_index(index), grasp(GraspFrameOf(tree, index)), regrasps(gripper) {}
+    : tree(held),
+      grasp_index(index),
+      grasp(GraspFrameOf(tree, index)),
+      grasp_indices{index},
+      grasps{grasp},
+      regrasps(gripper) {}
 
 RecordedMechanism RecordedMechanismOf(const KinematicTree& tree) {
   RecordedMechanism recorded;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "vmech/hw_interface/recording/recording.h"
 #include "vmech/kinematics/tree/grasp_frame.h"
 #include "vmech/kinematics/tree/kinematic_tree.h"
@@ -17,6 +19,9 @@ struct RecordedTree {
   KinematicTree tree;
   int grasp_index = -1;
   GraspFrame grasp;
+  // Of every hand; the first is the one above.
+  std::vector<int> grasp_indices;
+  std::vector<GraspFrame> grasps;
   bool regrasps = false;  ///< the hand lets go and takes hold elsewhere, as with a gripper
 };
 

@@ -14,8 +14,9 @@ enum class ReplayKind {
 /// A recording as a master: sample after sample, one per read, whatever is commanded.
 class ReplayMaster : public Master {
  public:
-  /// @throws std::invalid_argument if the recording is empty.
-  explicit ReplayMaster(Recording recording, ReplayKind kind = ReplayKind::kHand);
+  /// `hand`: of several, counted from 0. @throws std::invalid_argument if the recording is empty or
+  /// does not have that hand.
+  explicit ReplayMaster(Recording recording, ReplayKind kind = ReplayKind::kHand, int hand = 0);
   ~ReplayMaster() override { Shutdown(); }
 
   const MovingFrame* ObservedHand() const noexcept override;
@@ -29,6 +30,7 @@ class ReplayMaster : public Master {
 
   Recording recording_;
   ReplayKind kind_;
+  int index_;  // of the hand
   std::size_t next_ = 0;
   bool observed_ = false;
   MovingFrame hand_;

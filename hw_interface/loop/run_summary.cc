@@ -31,6 +31,17 @@ std::string Durations(const char* what, const Histogram& h) {
 
 }  // namespace
 
+std::string HandSummary::Report() const {
+  std::string text = fmt::format("  samples missed {}, {} grasps\n", missed, grasps);
+  text += fmt::format("  peak force {:.4g} N, moment {:.4g} N m; least energy {:.3g} J\n",
+                      peak_force, peak_moment, least_energy);
+  text += fmt::format(
+      "  safety: without force {} ticks, ramped {}, damped {}, clamped {}, slewed {}, braked {}\n",
+      safety.off, safety.stages[0], safety.stages[1], safety.stages[2], safety.stages[3],
+      safety.stages[4]);
+  return text;
+}
+
 std::string RunSummary::BriefReport() const {
   return fmt::format("{}: {} after {} ticks of {:g} ms, {} slots skipped, peak {:.3g} N", device,
                      Outcome(*this), ticks, 1e3 * period, skipped, peak_force);
@@ -40,14 +51,12 @@ std::string RunSummary::FullReport() const {
   std::string text = BriefReport() + "\n";
   text += "  " + realtime.BriefReport() + "\n";
   text += Durations("late", late) + Durations("interval", interval) + Durations("compute", compute);
-  text += fmt::format("  samples missed {}, mechanism held {} ticks, {} grasps\n", missed, held,
-                      grasps);
-  text += fmt::format("  peak force {:.4g} N, moment {:.4g} N m; least energy {:.3g} J\n",
-                      peak_force, peak_moment, least_energy);
-  text += fmt::format(
-      "  safety: without force {} ticks, ramped {}, damped {}, clamped {}, slewed {}, braked {}\n",
-      safety.off, safety.stages[0], safety.stages[1], safety.stages[2], safety.stages[3],
-      safety.stages[4]);
+  text += fmt::format("  mechanism held {} ticks\n", held) + Report();
+  for (size_t i = 0; i < others.size(); ++i) {
+    text += fmt::format("  hand {}: {}{}\n", i + 2, others[i].device,
+                        others[i].cause == ForceOff::kLinkLost ? ", link lost: it has let go" : "");
+    text += others[i].Report();
+  }
   if (*AdviceFor(cause) != 0) text += fmt::format("  to mend it: {}\n", AdviceFor(cause));
   if (!post_mortem.empty()) {
     text += fmt::format("  the last ticks are in {}\n", post_mortem.string());

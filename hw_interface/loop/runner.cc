@@ -3,31 +3,48 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "vmech/base/check_range.h"
-#include "vmech/base/rotation_error.h"
-#include "vmech/base/screw_algebra.h"
 #include "vmech/hw_interface/recording/recording_file.h"
 
 namespace vmech {
 namespace {
 
-std::unique_ptr<ArmTorques> MakeTorques(const RunnerOptions& options, const DeviceInfo& info) {
-  if (!options.joint_torques || !info.takes_torque || !info.arm) return nullptr;
-  return std::make_unique<ArmTorques>(options.posture, info.arm, info.period,
-                                      info.angular.resolution);
+HandLoopOptions OptionsOf(const RunnerOptions& options, const RunnerHand& hand, const Tick& tick) {
+  HandLoopOptions own;
+  own.safety = hand.safety;
+  own.observer = hand.observer;
+  own.posture = options.posture;
+  own.gripper = options.gripper;
+  own.joint_torques = options.joint_torques;
+  own.uses_observed = tick.UsesObservedHand();
+  own.command_life = options.command_life;
+  own.R_WD = options.R_WD;
+  return own;
 }
 
-std::unique_ptr<HandObserver> MakeObserver(const RunnerOptions& options, const Tick& tick,
-                                           const DeviceInfo& info) {
-  if (!tick.UsesObservedHand() || options.observer.bandwidth == 0) return nullptr;
-  if (!HandObserver::Suits(info)) return nullptr;
-  return std::make_unique<HandObserver>(options.observer, info);
+void RequireHands(std::span<const RunnerHand> hands, const Tick& tick) {
+  if (static_cast<int>(hands.size()) != tick.hands()) {
+    throw std::invalid_argument(
+        fmt::format("Runner: {} devices for a mechanism in {} hands; give one for each",
+                    hands.size(), tick.hands()));
+  }
+  const DeviceInfo& first = hands.front().master->info();
+  for (const RunnerHand& hand : hands) {
+    const DeviceInfo& info = hand.master->info();
+    if (info.period == first.period) continue;
+    throw std::invalid_argument(
+        fmt::format("Runner: {} has a period of {:g} ms and {} one of {:g} ms; two hands need "
+                    "devices of the same rate",
+                    first.name, 1e3 * first.period, info.name, 1e3 * info.period));
+  }
 }
 
 std::size_t RingSize(const RunnerOptions& options, std::uint64_t slots) {
@@ -38,6 +55,8 @@ std::size_t RingSize(const RunnerOptions& options, std::uint64_t slots) {
 /// With everything as large as the tick will fill it.
 TickRecord EmptyRecord(const Tick& tick) {
   TickRecord record;
+  record.others.resize(static_cast<std::size_t>(tick.hands() - 1));
+  record.picture.others.resize(record.others.size());
   tick.Show(&record.picture);
   record.channels.resize(tick.ChannelNames().size());
   return record;
@@ -63,20 +82,27 @@ void RunnerOptions::Validate() const {
 }
 
 Runner::Runner(const RunnerOptions& options, Master* master, Tick* tick, LoopClock* clock)
+    : Runner(options, std::array{RunnerHand{master, options.safety, options.observer}}, tick,
+             clock) {}
+
+Runner::Runner(const RunnerOptions& options, std::span<const RunnerHand> hands, Tick* tick,
+               LoopClock* clock)
     : options_(options),
-      master_(master),
       tick_(tick),
       clock_(clock),
-      period_(master->info().period),
+      inputs_(hands.size()),
+      outputs_(hands.size()),
+      period_(hands.front().master->info().period),
       period_ns_(std::llround(period_ * 1e9)),
-      safety_(options.safety, master->info()),
-      torques_(MakeTorques(options, master->info())),
-      observer_(MakeObserver(options, *tick, master->info())),
       channels_(tick->ChannelNames()) {
   options.Validate();
+  RequireHands(hands, *tick);
+  for (const RunnerHand& hand : hands) {
+    hands_.push_back(std::make_unique<HandLoop>(OptionsOf(options, hand, *tick), hand.master));
+  }
   slots_ = static_cast<std::uint64_t>(std::llround(options.seconds / period_));
   kept_.resize(RingSize(options, slots_), EmptyRecord(*tick));
-  summary_.device = master->info().name;
+  static_cast<HandSummary&>(summary_) = hands_.front()->Summary();
   summary_.period = period_;
 }
 
@@ -85,7 +111,7 @@ RunSummary Runner::Run() {
   if (options_.realtime) scope.emplace(*options_.realtime);
   if (scope) summary_.realtime = scope->report();
   const unsigned mode = SetFlushToZero();
-  master_->Activate();
+  Activate();
   std::int64_t slot_ns = clock_->Now();
   while (!IsOver()) {
     clock_->SleepUntil(slot_ns);
@@ -100,181 +126,87 @@ RunSummary Runner::Run() {
     if (recorder_ != nullptr) recorder_->Take(record);
     slot_ns += period_ns_;
   }
-  master_->Deactivate();
+  Deactivate();
   RestoreFloatingPoint(mode);
   scope.reset();
   Finish();
   return summary_;
 }
 
+/// All, or none.
+void Runner::Activate() {
+  try {
+    for (const auto& hand : hands_) hand->master().Activate();
+  } catch (...) {
+    Deactivate();
+    throw;
+  }
+}
+
+void Runner::Deactivate() noexcept {
+  for (const auto& hand : hands_) hand->master().Deactivate();
+}
+
 bool Runner::IsOver() const noexcept {
   const bool time_over = slots_ > 0 && summary_.ticks + summary_.skipped >= slots_;
-  return time_over || stop_ || failed_ || safety_.latched() != ForceOff::kNone;
+  return time_over || stop_ || failed_ || Cause() != ForceOff::kNone;
+}
+
+/// Why the loop has to stop: what tripped, or the last link that was lost.
+ForceOff Runner::Cause() const noexcept {
+  bool all_lost = true;
+  for (const auto& hand : hands_) {
+    if (hand->lost()) continue;
+    if (hand->latched() != ForceOff::kNone) return hand->latched();
+    all_lost = false;
+  }
+  return all_lost ? ForceOff::kLinkLost : ForceOff::kNone;
 }
 
 void Runner::RunSlot(std::int64_t slot_ns, TickRecord* record) noexcept {
   WallClock stopwatch;
   const std::int64_t start = stopwatch.Now();
-  record->io = ReadMaster(slot_ns, &state_);
-  record->state = state_;
-  const TickOutput wanted = StepTick(record->io, record);
-  const SafetyOutput safe =
-      safety_.Apply({master_->lifecycle(), record->io, &state_, record->wanted_F_Ho_D,
-                     wanted.stored_energy, torques_ ? torques_->room() : WrenchLimit{}});
-  Send(slot_ns, safe);
-  record->sent_F_Ho_D = safe.F_Ho_D;
-  record->off = safe.off;
-  record->stages = safe.stages;
-  record->energy = safe.energy;
-  failed_ = wanted.status == TickStatus::kFailed;
-  summary_.held += wanted.status == TickStatus::kHeld;
+  for (std::size_t i = 0; i < hands_.size(); ++i) {
+    hands_[i]->Read(slot_ns, emergency_stop_, &record->of_hand(static_cast<int>(i)));
+  }
+  StepTick(record);
+  for (std::size_t i = 0; i < hands_.size(); ++i) {
+    hands_[i]->Send(slot_ns, outputs_[i].stored_energy, &record->of_hand(static_cast<int>(i)));
+  }
+  failed_ = outputs_.front().status == TickStatus::kFailed;
+  summary_.held += outputs_.front().status == TickStatus::kHeld;
   record->compute_ns = static_cast<std::int32_t>(stopwatch.Now() - start);
 }
 
-IoStatus Runner::ReadMaster(std::int64_t slot_ns, MasterState* state) noexcept {
-  const IoStatus io = master_->Read(slot_ns, state);
-  if (emergency_stop_) state->emergency_stop = true;
-  fresh_ = io == IoStatus::kOk;
-  if (fresh_) gap_ = missing_;
-  missing_ = fresh_ ? 0 : missing_ + 1;
-  summary_.missed += fresh_ ? 0 : 1;
-  return io;
-}
-
-/// The wrench of the mechanism on the hand, in the device's axes.
-TickOutput Runner::StepTick(IoStatus io, TickRecord* record) noexcept VMECH_NONBLOCKING {
-  TickOutput out;
+/// The wrenches of the mechanism on the hands, in their devices' axes. Nothing moves before the
+/// first of them has come.
+void Runner::StepTick(TickRecord* record) noexcept VMECH_NONBLOCKING {
   std::fill(record->channels.begin(), record->channels.end(), 0.0);
-  record->wanted_F_Ho_D.setZero();
-  record->observed = false;
-  record->room = {};
-  record->stored_energy = 0;
-  if (!registered_) {
-    if (io != IoStatus::kOk) return out;
-    Register();
-    last_sample_ = state_;
-    registered_ = true;
+  std::fill(outputs_.begin(), outputs_.end(), TickOutput{});
+  RegisterThoseThatArrive();
+  if (!started_) return;
+  for (std::size_t i = 0; i < hands_.size(); ++i) {
+    HandLoop& hand = *hands_[i];
+    const int index = static_cast<int>(i);
+    inputs_[i] = hand.registered() && !hand.lost()
+                     ? hand.Prepare(index, tick_, &record->of_hand(index))
+                     : hand.Absent();
   }
-  MovingFrame observed;
-  const Matrix3d& R_WD = registration_.X_WD.R;
-  const Vector6d F_Ho_D = safety_.WrenchCharged(state_);
-  const Vector6d charged = Stacked<double>(R_WD * F_Ho_D.head<3>(), R_WD * F_Ho_D.tail<3>());
-  if (fresh_) {
-    if (gap_ > options_.safety.hold_periods) TakeUpAgain();
-    Observe();
-    GraspOrLetGo();
-  }
-  TickInput input;
-  input.held = holds_;
-  input.fresh = fresh_;
-  input.elapsed = fresh_ ? PeriodsBetween(last_sample_, state_, period_) * period_ : 0;
-  input.state = &state_;
-  record->room = input.room = Room();
-  input.debt = safety_.Debt();
-  input.charged_F_Ho_W = &charged;
-  if (const std::optional<MovingFrame> hand = ObservedHand()) {
-    record->observed = true;
-    record->hand = RecordedHand::Of(*hand);
-    registration_.TakeHandInWorld(*hand, &observed);
-    input.observed = &observed;
-  } else {
-    input.X_WH = registration_.HandInWorld(state_.X_DH);
-  }
-  if (fresh_) last_sample_ = state_;
-  out = tick_->Step(input, std::span<double>(record->channels.data(), channels_.size()));
-  const Matrix3d R_DW = registration_.X_WD.R.transpose();
-  record->wanted_F_Ho_D << R_DW * out.F_Ho_W.head<3>(), R_DW * out.F_Ho_W.tail<3>();
-  if (out.status == TickStatus::kFailed) record->wanted_F_Ho_D.setZero();
-  Picture(out, record);
-  return out;
-}
-
-void Runner::Picture(const TickOutput& out, TickRecord* record) const noexcept {
-  record->registration = registration_;
-  record->stored_energy = out.stored_energy;
+  tick_->StepHands(inputs_, outputs_, std::span<double>(record->channels.data(), channels_.size()));
   tick_->Show(&record->picture);
-  record->picture.holds = holds_;
-  record->picture.F_Ho_W = out.F_Ho_W;
-}
-
-/// By the observer here, or by the one that was at work when the session was recorded. Where
-/// samples are missing, the hand goes on as it did, for a few periods.
-std::optional<MovingFrame> Runner::ObservedHand() const noexcept {
-  if (!observer_) {
-    const MovingFrame* hand = tick_->UsesObservedHand() ? master_->ObservedHand() : nullptr;
-    return hand != nullptr ? std::optional(*hand) : std::nullopt;
-  }
-  MovingFrame hand = observer_->hand_D();
-  const int ahead = std::min(missing_, options_.safety.hold_periods);
-  if (ahead > 0) hand.X = Displaced(hand.X, (ahead * period_) * hand.V);
-  return hand;
-}
-
-WrenchLimit Runner::Room() const noexcept {
-  return torques_ ? torques_->room() : master_->Room();
-}
-
-void Runner::Observe() noexcept {
-  if (!observer_) return;
-  const auto periods = std::lround(PeriodsBetween(last_sample_, state_, period_));
-  observer_->Update(state_, safety_.WrenchAtWork(state_), static_cast<int>(periods));
-}
-
-/// Puts the hand where the grasp frame is.
-void Runner::Register() noexcept {
-  registration_ = GraspedAt(options_.R_WD, state_.X_DH, tick_->GraspFrame());
-  tick_->Reset();
-  if (torques_) torques_->Reset();
-  if (observer_) observer_->Reset();
-  holds_ = !options_.gripper;
-  summary_.grasps += holds_;
-}
-
-/// After a gap for which there was no force: the hand, wherever it has gone, has hold of the grasp
-/// frame where that is.
-void Runner::TakeUpAgain() noexcept {
-  if (observer_) observer_->Reset();
-  registration_ = GraspedAt(options_.R_WD, state_.X_DH, tick_->GraspFrame());
-}
-
-void Runner::GraspOrLetGo() noexcept {
-  const bool closes = GripperCloses();
-  if (closes == holds_) return;
-  holds_ = closes;
-  safety_.ForgetStoredEnergy();
-  if (!closes) return;
-  ++summary_.grasps;
-  const std::optional<MovingFrame> observed = ObservedHand();
-  const Posed X_DH = observed ? PoseOf(observed->X) : state_.X_DH;
-  if (!tick_->GraspAt(registration_.HandInWorld(X_DH))) {
-    safety_.Restart();
-    registration_ = GraspedAt(options_.R_WD, state_.X_DH, tick_->GraspFrame());
-    tick_->Reset();
+  for (std::size_t i = 0; i < hands_.size(); ++i) {
+    const int index = static_cast<int>(i);
+    hands_[i]->Take(outputs_[i], &record->picture.hand(index), &record->of_hand(index));
   }
 }
 
-/// With a dead zone between closed and open.
-bool Runner::GripperCloses() const noexcept {
-  if (!options_.gripper || !(state_.valid & kSensesGripper)) return true;
-  constexpr double kClosed = 0.1, kOpen = 0.2;  // [rad]
-  return state_.gripper_opening < (holds_ ? kOpen : kClosed);
-}
-
-void Runner::Send(std::int64_t slot_ns, const SafetyOutput& safe) noexcept {
-  MasterCommand command;
-  command.sequence = safe.sequence;
-  command.valid_until_ns = slot_ns + options_.command_life * period_ns_;
-  command.F_Ho_D = safe.F_Ho_D;
-  if (safe.off == ForceOff::kNone) {
-    if (torques_) {
-      command.mode = CommandMode::kJointTorque;
-      torques_->Resolve(state_, fresh_, &command);
-    } else if (master_->info().takes_wrench) {
-      command.mode = CommandMode::kWrench;
-    }
+void Runner::RegisterThoseThatArrive() noexcept {
+  for (std::size_t i = 0; i < hands_.size(); ++i) {
+    if (!hands_[i]->arrives()) continue;
+    hands_[i]->Register(tick_->HeldFrame(static_cast<int>(i)));
+    if (!started_) tick_->Reset();
+    started_ = true;
   }
-  // A write that does not arrive shows as a lost link in the next read.
-  (void)master_->Write(command);
 }
 
 void Runner::Account(const TickRecord& record, std::int64_t now_ns) noexcept {
@@ -284,21 +216,18 @@ void Runner::Account(const TickRecord& record, std::int64_t now_ns) noexcept {
   summary_.compute.Add(record.compute_ns);
   if (last_wake_ns_ >= 0) summary_.interval.Add(now_ns - last_wake_ns_);
   last_wake_ns_ = now_ns;
-  const double force = record.sent_F_Ho_D.head<3>().norm();
-  summary_.peak_force = std::max(summary_.peak_force, force);
-  summary_.peak_moment = std::max(summary_.peak_moment, record.sent_F_Ho_D.tail<3>().norm());
-  summary_.least_energy = std::min(summary_.least_energy, record.energy);
   live_.ticks = summary_.ticks;
   live_.skipped = summary_.skipped;
-  live_.force = force;
+  live_.force = record.sent_F_Ho_D.head<3>().norm();
   live_.energy = record.energy;
   live_.compute_ns = record.compute_ns;
   live_.off = record.off;
 }
 
 void Runner::Finish() {
-  summary_.safety = safety_.counters();
-  summary_.cause = safety_.latched();
+  static_cast<HandSummary&>(summary_) = hands_.front()->Summary();
+  for (std::size_t i = 1; i < hands_.size(); ++i) summary_.others.push_back(hands_[i]->Summary());
+  summary_.cause = Cause();
   const bool fault = failed_ || summary_.cause != ForceOff::kNone;
   summary_.status = fault ? RunStatus::kFault : stop_ ? RunStatus::kStopped : RunStatus::kFinished;
   if (!fault || options_.post_mortem.empty()) return;
@@ -311,14 +240,15 @@ Recording Runner::Kept() const {
 }
 
 RecordingHeader Runner::Header() const {
-  const DeviceInfo& info = master_->info();
   RecordingHeader header;
-  header.device = summary_.device;
+  header.others.resize(hands_.size() - 1);
+  for (std::size_t i = 0; i < hands_.size(); ++i) {
+    const DeviceInfo& info = hands_[i]->master().info();
+    RecordedDevice& device = i == 0 ? header : header.others[i - 1];
+    device = {info.name, info.delay, info.linear, info.angular};
+  }
   header.period = period_;
   header.channels = channels_;
-  header.delay = info.delay;
-  header.linear = info.linear;
-  header.angular = info.angular;
   header.notes = options_.notes;
   header.states = tick_->StateNames();
   header.mechanism = options_.mechanism;

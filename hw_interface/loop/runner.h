@@ -4,10 +4,12 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "vmech/base/nonblocking.h"
-#include "vmech/hw_interface/estimation/hand_observer.h"
-#include "vmech/hw_interface/loop/arm_torques.h"
+#include "vmech/hw_interface/loop/hand_loop.h"
 #include "vmech/hw_interface/loop/histogram.h"
 #include "vmech/hw_interface/loop/loop_clock.h"
 #include "vmech/hw_interface/loop/realtime.h"
@@ -44,21 +46,15 @@ enum class RunStatus : std::uint8_t {
   kFault,     ///< the safety filter latched or the tick failed; the motors are off
 };
 
-/// What came of a run; every figure was measured here.
-struct RunSummary {
+/// What came of a run; every figure was measured here. Of several hands the first is the summary's.
+struct RunSummary : HandSummary {
   RunStatus status = RunStatus::kNotRun;
-  ForceOff cause = ForceOff::kNone;  ///< of a fault
-  std::string device;
   double period = 0;  ///< [s]
   std::uint64_t ticks = 0;
   std::uint64_t skipped = 0;          ///< slots that passed while the loop was late
-  std::uint64_t missed = 0;           ///< ticks without a new sample
   std::uint64_t held = 0;             ///< ticks in which the mechanism could not follow
-  std::uint64_t grasps = 0;           ///< how often the hand took hold
   Histogram late, interval, compute;  ///< [ns]; `interval` from wake-up to wake-up
-  SafetyCounters safety;
-  double peak_force = 0, peak_moment = 0;  ///< sent [N], [N m]
-  double least_energy = 0;                 ///< of the passivity observer [J]
+  std::vector<HandSummary> others;    ///< hands beside the first
   RealtimeReport realtime;
   std::filesystem::path post_mortem;  ///< what was written after a fault
 
@@ -66,7 +62,14 @@ struct RunSummary {
   std::string FullReport() const;
 };
 
-/// The newest figures of a running loop, for other threads.
+/// One of several hands on a mechanism.
+struct RunnerHand {
+  Master* master = nullptr;  ///< configured
+  SafetyOptions safety;
+  HandObserverOptions observer;
+};
+
+/// The newest figures of a running loop and its first hand, for other threads.
 struct LiveStatus {
   std::atomic<std::uint64_t> ticks = 0, skipped = 0;
   std::atomic<double> force = 0;   ///< sent [N]
@@ -77,15 +80,20 @@ struct LiveStatus {
 
 /// The loop around a tick: sleep until the slot, read, step, filter, write. Slots lie on a grid of
 /// the device's period; a late loop skips those that have passed and never catches up in a burst.
-/// It owns the gate: the master is active only while the loop runs. In a tick nothing allocates,
-/// locks, logs or throws.
+/// It owns the gate: the masters are active only while the loop runs. Each of several hands has its
+/// own observer, registration and safety filter; a trip of one stops all, and one whose link is
+/// lost lets go while the others go on. In a tick nothing allocates, locks, logs or throws.
 class Runner {
  public:
   /// `master` must be configured; it, `tick` and `clock` must outlive the runner.
   /// @throws std::invalid_argument as the options' Validate and SafetyFilter.
   Runner(const RunnerOptions& options, Master* master, Tick* tick, LoopClock* clock);
+  /// A hand for each that the tick has; safety and observer are theirs in place of the options'.
+  /// @throws std::invalid_argument too for another number of hands, or periods that differ.
+  Runner(const RunnerOptions& options, std::span<const RunnerHand> hands, Tick* tick,
+         LoopClock* clock);
 
-  /// Activates the master, runs, deactivates it, writes the last ticks after a fault.
+  /// Activates the masters, runs, deactivates them, writes the last ticks after a fault.
   /// @throws what Master::Activate and WriteRecording throw.
   RunSummary Run();
 
@@ -104,43 +112,32 @@ class Runner {
   void SetRecorder(TickRecorder* recorder) noexcept { recorder_ = recorder; }
 
  private:
+  void Activate();
+  void Deactivate() noexcept;
   bool IsOver() const noexcept;
+  ForceOff Cause() const noexcept;
   void RunSlot(std::int64_t slot_ns, TickRecord* record) noexcept;
-  IoStatus ReadMaster(std::int64_t slot_ns, MasterState* state) noexcept;
-  void Observe() noexcept;
-  std::optional<MovingFrame> ObservedHand() const noexcept;
-  WrenchLimit Room() const noexcept;
-  void Picture(const TickOutput& out, TickRecord* record) const noexcept;
-  TickOutput StepTick(IoStatus io, TickRecord* record) noexcept VMECH_NONBLOCKING;
-  void Register() noexcept;
-  void TakeUpAgain() noexcept;
-  void GraspOrLetGo() noexcept;
-  bool GripperCloses() const noexcept;
-  void Send(std::int64_t slot_ns, const SafetyOutput& safe) noexcept;
+  void StepTick(TickRecord* record) noexcept VMECH_NONBLOCKING;
+  void RegisterThoseThatArrive() noexcept;
   void Account(const TickRecord& record, std::int64_t now_ns) noexcept;
   void Finish();
   Recording LastTicks(std::uint64_t count) const;
 
   RunnerOptions options_;
-  Master* master_;
   Tick* tick_;
   LoopClock* clock_;
+  std::vector<std::unique_ptr<HandLoop>> hands_;
+  std::vector<TickInput> inputs_;
+  std::vector<TickOutput> outputs_;
   double period_;
   std::int64_t period_ns_;
-  SafetyFilter safety_;
-  std::unique_ptr<ArmTorques> torques_;
-  std::unique_ptr<HandObserver> observer_;
-  Registration registration_;
-  MasterState state_;
   std::vector<std::string> channels_;
   std::vector<TickRecord> kept_;  // a ring
   TickRecorder* recorder_ = nullptr;
   RunSummary summary_;
   LiveStatus live_;
   std::uint64_t slots_ = 0;  // to run; 0: no end
-  bool registered_ = false, holds_ = false, fresh_ = false, failed_ = false;
-  MasterState last_sample_;
-  int missing_ = 0, gap_ = 0;  // samples in a row: now, and before the last fresh one
+  bool started_ = false, failed_ = false;
   std::int64_t last_wake_ns_ = -1;
   std::atomic<bool> stop_ = false, emergency_stop_ = false;
 };

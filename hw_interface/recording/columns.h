@@ -33,33 +33,45 @@ class ColumnVisit {
       : header_(header), visit_(*visit), tick_(*tick) {}
 
   void All() {
-    Sample();
-    Loop();
-    if (header_.format > 1) Hand();
-    if (header_.format > 1) Mechanism();
+    Sample(tick_);
+    Loop(tick_);
+    if (header_.format > 1) {
+      Hand(tick_);
+      Grasp(tick_, tick_.picture);
+      Mechanism();
+    }
+    for (int i = 1; i < header_.hands(); ++i) {
+      prefix_ = fmt::format("hand {} ", i + 1);
+      Sample(tick_.of_hand(i));
+      Filter(tick_.of_hand(i));
+      Hand(tick_.of_hand(i));
+      Grasp(tick_.of_hand(i), tick_.picture.hand(i));
+    }
+    prefix_.clear();
     for (size_t i = 0; i < header_.channels.size(); ++i) Channel(i);
   }
 
  private:
   template <typename Value>
   void One(std::string_view name, Value& value) {
-    visit_([&] { return std::string(name); }, value);
+    visit_([&] { return prefix_ + std::string(name); }, value);
   }
   template <typename Vector>
   void Six(std::string_view name, Vector& vector) {
-    for (int i = 0; i < 6; ++i) visit_([&] { return fmt::format("{}_{}", name, i); }, vector[i]);
+    for (int i = 0; i < 6; ++i)
+      visit_([&] { return fmt::format("{}{}_{}", prefix_, name, i); }, vector[i]);
   }
   template <typename Vector>
   void Point(std::string_view name, Vector& p) {
     for (int i = 0; i < 3; ++i) {
-      visit_([&] { return fmt::format("{}_{}", name, "xyz"[i]); }, p[i]);
+      visit_([&] { return fmt::format("{}{}_{}", prefix_, name, "xyz"[i]); }, p[i]);
     }
   }
   /// Nine numbers: they come back to the last bit.
   template <typename Matrix>
   void Exactly(std::string_view name, Matrix& R) {
     for (int i = 0; i < 9; ++i) {
-      visit_([&] { return fmt::format("{}_{}{}", name, "xyz"[i / 3], "xyz"[i % 3]); },
+      visit_([&] { return fmt::format("{}{}_{}{}", prefix_, name, "xyz"[i / 3], "xyz"[i % 3]); },
              R(i / 3, i % 3));
     }
   }
@@ -69,7 +81,7 @@ class ColumnVisit {
     Eigen::Quaterniond turn(R);
     double wxyz[4] = {turn.w(), turn.x(), turn.y(), turn.z()};
     for (int i = 0; i < 4; ++i) {
-      visit_([&] { return fmt::format("{}_{}", name, "wxyz"[i]); }, wxyz[i]);
+      visit_([&] { return fmt::format("{}{}_{}", prefix_, name, "wxyz"[i]); }, wxyz[i]);
     }
     if constexpr (!std::is_const_v<Tick>) {
       turn = Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized();
@@ -82,8 +94,9 @@ class ColumnVisit {
     Turn(name + "_q", X.R);
   }
 
-  void Sample() {
-    auto& state = tick_.state;
+  template <typename Record>
+  void Sample(Record& record) {
+    auto& state = record.state;
     One("sequence", state.sequence);
     One("device_time_ns", state.device_time_ns);
     One("host_time_ns", state.host_time_ns);
@@ -101,43 +114,53 @@ class ColumnVisit {
     Six("V_DH", state.V_DH);
     Six("applied", state.applied_F_Ho_D);
     for (int i = 0; i < kMaxArmJoints; ++i) {
-      visit_([&] { return fmt::format("q_{}", i); }, state.q[i]);
+      visit_([&] { return fmt::format("{}q_{}", prefix_, i); }, state.q[i]);
     }
     One("gripper", state.gripper_opening);
   }
 
-  void Loop() {
-    Six("wanted", tick_.wanted_F_Ho_D);
-    Six("sent", tick_.sent_F_Ho_D);
-    visit_.Named([] { return std::string("io"); }, IoNames(), tick_.io);
-    visit_.Named([] { return std::string("off"); }, ForceOffNames(), tick_.off);
-    visit_.Named([] { return std::string("stages"); }, StageNames(), tick_.stages);
-    One("energy", tick_.energy);
-    One("late_ns", tick_.late_ns);
-    One("compute_ns", tick_.compute_ns);
-    One("skipped", tick_.skipped);
+  void Loop(Tick& tick) {
+    Filter(tick);
+    One("late_ns", tick.late_ns);
+    One("compute_ns", tick.compute_ns);
+    One("skipped", tick.skipped);
   }
 
-  void Hand() {
-    One("observed", tick_.observed);
-    Point("hand_p", tick_.hand.X_DH.p);
-    Exactly("hand_R", tick_.hand.X_DH.R);
-    Six("hand_V", tick_.hand.V_DH);
-    SevenOf("X_WD", tick_.registration.X_WD);
-    Turn("R_HK", tick_.registration.R_HK);
+  template <typename Record>
+  void Filter(Record& record) {
+    Six("wanted", record.wanted_F_Ho_D);
+    Six("sent", record.sent_F_Ho_D);
+    visit_.Named([&] { return prefix_ + "io"; }, IoNames(), record.io);
+    visit_.Named([&] { return prefix_ + "off"; }, ForceOffNames(), record.off);
+    visit_.Named([&] { return prefix_ + "stages"; }, StageNames(), record.stages);
+    One("energy", record.energy);
   }
 
-  void Mechanism() {
-    auto& picture = tick_.picture;
-    One("room_force", tick_.room.force);
-    One("room_moment", tick_.room.moment);
-    One("room_together", tick_.room.together);
-    One("stored_energy", tick_.stored_energy);
+  template <typename Record>
+  void Hand(Record& record) {
+    One("observed", record.observed);
+    Point("hand_p", record.hand.X_DH.p);
+    Exactly("hand_R", record.hand.X_DH.R);
+    Six("hand_V", record.hand.V_DH);
+    SevenOf("X_WD", record.registration.X_WD);
+    Turn("R_HK", record.registration.R_HK);
+  }
+
+  template <typename Record, typename Picture>
+  void Grasp(Record& record, Picture& picture) {
+    One("room_force", record.room.force);
+    One("room_moment", record.room.moment);
+    One("room_together", record.room.together);
+    One("stored_energy", record.stored_energy);
     One("holds", picture.holds);
     SevenOf("X_WH", picture.X_WH);
     SevenOf("X_WG", picture.X_WG);
     Six("dynamic", picture.dynamic);
     Six("constraint", picture.constraint);
+  }
+
+  void Mechanism() {
+    auto& picture = tick_.picture;
     const RecordedMechanism& names = header_.mechanism;
     Several("coordinate", names.coordinates, picture.q);
     Several("velocity", names.velocities, picture.v);
@@ -173,6 +196,7 @@ class ColumnVisit {
   const RecordingHeader& header_;
   Visitor& visit_;
   Tick& tick_;
+  std::string prefix_;  // of the columns of a hand beside the first
 };
 
 template <typename Visitor, typename Tick>

@@ -66,6 +66,36 @@ std::vector<std::string>* ListOf(std::string_view key, RecordingHeader* header) 
   return nullptr;
 }
 
+/// False for any other key.
+bool TakeDeviceItem(std::string_view key, std::string_view text, RecordedDevice* device) {
+  if (key == "device") {
+    device->device = text;
+  } else if (key == "delay") {
+    device->delay = NumberIn(key, text);
+  } else if (key == "linear") {
+    device->linear = PhysicsIn(key, text);
+  } else if (key == "angular") {
+    device->angular = PhysicsIn(key, text);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+/// "2 device NAME", "2 delay 0.001", ..
+void TakeHandItem(std::string_view line, RecordingHeader* header) {
+  constexpr double kMostHands = 8;
+  const double hand = NumberIn("hand", NextWord(&line));
+  const std::string_view item = NextWord(&line);
+  if (hand >= 2 && hand <= kMostHands) {
+    const auto index = static_cast<size_t>(hand - 2);
+    if (header->others.size() <= index) header->others.resize(index + 1);
+    if (TakeDeviceItem(item, line, &header->others[index])) return;
+  }
+  throw std::runtime_error(fmt::format(
+      "'hand {:g} {}': device, delay, linear or angular of hand 2 to 8 expected", hand, item));
+}
+
 void MakePlain(std::vector<std::string>* names) {
   for (std::string& name : *names) {
     for (char& c : name) {
@@ -83,6 +113,16 @@ HeaderItems ItemsOf(const RecordingHeader& header) {
                     {"delay", fmt::to_string(header.delay)},
                     {"linear", PhysicsText(header.linear)},
                     {"angular", PhysicsText(header.angular)}};
+  for (int i = 1; i < header.hands(); ++i) {
+    const RecordedDevice& other = header.others[static_cast<size_t>(i - 1)];
+    const auto add = [&](const char* key, const std::string& text) {
+      items.emplace_back(fmt::format("hand {} {}", i + 1, key), text);
+    };
+    add("device", OneLine(other.device));
+    add("delay", fmt::to_string(other.delay));
+    add("linear", PhysicsText(other.linear));
+    add("angular", PhysicsText(other.angular));
+  }
   for (const auto& [key, text] : header.notes) items.emplace_back("note " + key, OneLine(text));
   AddNumbered("coordinate", header.mechanism.coordinates, &items);
   AddNumbered("velocity", header.mechanism.velocities, &items);
@@ -94,16 +134,11 @@ HeaderItems ItemsOf(const RecordingHeader& header) {
 
 void TakeItem(std::string_view line, RecordingHeader* header) {
   const std::string_view key = NextWord(&line);
-  if (key == "device") {
-    header->device = line;
+  if (TakeDeviceItem(key, line, header)) return;
+  if (key == "hand") {
+    TakeHandItem(line, header);
   } else if (key == "period") {
     header->period = NumberIn(key, line);
-  } else if (key == "delay") {
-    header->delay = NumberIn(key, line);
-  } else if (key == "linear") {
-    header->linear = PhysicsIn(key, line);
-  } else if (key == "angular") {
-    header->angular = PhysicsIn(key, line);
   } else if (key == "note") {
     const std::string_view note = NextWord(&line);
     header->notes.emplace_back(note, line);

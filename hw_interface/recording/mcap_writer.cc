@@ -51,7 +51,7 @@ std::string TickSchema(const std::vector<Column>& columns) {
                      properties);
 }
 
-std::string TransformJson(const Posed& X, const char* frame, std::uint64_t time) {
+std::string TransformJson(const Posed& X, const std::string& frame, std::uint64_t time) {
   constexpr std::uint64_t kSecond = 1'000'000'000;
   const Eigen::Quaterniond turn(X.R);
   return fmt::format(
@@ -59,6 +59,19 @@ std::string TransformJson(const Posed& X, const char* frame, std::uint64_t time)
       R"("translation":{{"x":{},"y":{},"z":{}}},"rotation":{{"x":{},"y":{},"z":{},"w":{}}}}})",
       time / kSecond, time % kSecond, frame, X.p.x(), X.p.y(), X.p.z(), turn.x(), turn.y(),
       turn.z(), turn.w());
+}
+
+/// Frames hand and grasp, of a second hand "hand 2" and "grasp 2".
+std::string TransformsJson(const TickPicture& picture, std::uint64_t time) {
+  std::string text;
+  for (int i = 0; i <= static_cast<int>(picture.others.size()); ++i) {
+    const std::string number = i == 0 ? "" : fmt::format(" {}", i + 1);
+    const HandPicture& hand = picture.hand(i);
+    if (i > 0) text += ',';
+    text += TransformJson(hand.X_WH, "hand" + number, time) + ',' +
+            TransformJson(hand.X_WG, "grasp" + number, time);
+  }
+  return fmt::format(R"({{"transforms":[{}]}})", text);
 }
 
 std::string MapOf(const HeaderItems& items) {
@@ -173,10 +186,7 @@ void McapWriter::Add(const TickRecord& tick, std::string* bytes) {
   json_ += '}';
   AddMessage(0, time, json_);
   if (first || time >= next_transforms_) {
-    AddMessage(
-        1, time,
-        fmt::format(R"({{"transforms":[{},{}]}})", TransformJson(tick.picture.X_WH, "hand", time),
-                    TransformJson(tick.picture.X_WG, "grasp", time)));
+    AddMessage(1, time, TransformsJson(tick.picture, time));
     next_transforms_ = time + kBetweenTransforms;
   }
   if (chunk_.size() >= kLargestChunk) Flush(bytes);

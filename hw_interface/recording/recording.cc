@@ -1,5 +1,7 @@
 #include "vmech/hw_interface/recording/recording.h"
 
+#include <fmt/format.h>
+
 #include <charconv>
 #include <system_error>
 
@@ -30,8 +32,14 @@ double RecordingHeader::Number(std::string_view wanted, double otherwise) const 
   return sound ? value : otherwise;
 }
 
+std::string RecordingHeader::KeyOf(std::string_view key, int hand) {
+  return hand == 0 ? std::string(key) : fmt::format("{}_{}", key, hand + 1);
+}
+
 TickRecord RecordingHeader::EmptyTick() const {
   TickRecord tick;
+  tick.others.resize(others.size());
+  tick.picture.others.resize(others.size());
   tick.channels.resize(channels.size());
   tick.picture.q.setZero(static_cast<Eigen::Index>(mechanism.coordinates.size()));
   tick.picture.v.setZero(static_cast<Eigen::Index>(mechanism.velocities.size()));

@@ -21,26 +21,34 @@ struct RecordedHand {
   MovingFrame Moving() const noexcept;
 };
 
-/// Everything about one tick of a haptic loop. What has no fixed size is sized once, from then on a
-/// loop copies it without allocation.
-struct TickRecord {
+/// A hand in one tick of a haptic loop.
+struct HandRecord {
   MasterState state;
   Vector6d wanted_F_Ho_D = Vector6d::Zero();  ///< of the virtual mechanism
   Vector6d sent_F_Ho_D = Vector6d::Zero();    ///< after the safety filter
   IoStatus io = IoStatus::kOk;
   ForceOff off = ForceOff::kNotActive;
-  std::uint32_t stages = 0;      ///< bits of SafetyStage
-  double energy = 0;             ///< the passivity observer's [J]
-  std::int32_t late_ns = 0;      ///< wake-up after its time
-  std::int32_t compute_ns = 0;   ///< from the wake-up to the command's write
-  std::int32_t skipped = 0;      ///< slots missed before this tick
-  bool observed = false;         ///< the tick went by `hand` in place of the sample
-  RecordedHand hand;             ///< of an observer
-  Registration registration;     ///< of the handle in the world
-  WrenchLimit room;              ///< what the device could exert at this posture
-  double stored_energy = 0;      ///< that the virtual side says it has, see passivity.h [J]
-  TickPicture picture;           ///< the mechanism
-  std::vector<double> channels;  ///< of the tick, named in the recording
+  std::uint32_t stages = 0;   ///< bits of SafetyStage
+  double energy = 0;          ///< the passivity observer's [J]
+  bool observed = false;      ///< the tick went by `hand` in place of the sample
+  RecordedHand hand;          ///< of an observer
+  Registration registration;  ///< of the handle in the world
+  WrenchLimit room;           ///< what the device could exert at this posture
+  double stored_energy = 0;   ///< that the virtual side says it has, see passivity.h [J]
+};
+
+/// Everything about one tick of a haptic loop; of several hands, the first is the record itself.
+/// What has no fixed size is sized once, from then on a loop copies it without allocation.
+struct TickRecord : HandRecord {
+  std::int32_t late_ns = 0;        ///< wake-up after its time
+  std::int32_t compute_ns = 0;     ///< from the wake-up to the command's write
+  std::int32_t skipped = 0;        ///< slots missed before this tick
+  TickPicture picture;             ///< the mechanism
+  std::vector<double> channels;    ///< of the tick, named in the recording
+  std::vector<HandRecord> others;  ///< hands beside the first
+
+  HandRecord& of_hand(int i) noexcept { return i == 0 ? *this : others[i - 1]; }
+  const HandRecord& of_hand(int i) const noexcept { return i == 0 ? *this : others[i - 1]; }
 };
 
 /// What a session was made of, in words without spaces as keys: mechanism, grasp, ...
@@ -56,13 +64,18 @@ struct RecordedMechanism {
 /// The format that is written; format 1 is read too.
 inline constexpr int kRecordingFormat = 2;
 
-/// What a recording says of all of its ticks.
-struct RecordingHeader {
+/// The device of a recorded hand.
+struct RecordedDevice {
   std::string device;
-  double period = 1e-3;               ///< [s]
-  std::vector<std::string> channels;  ///< names of a tick's
-  double delay = 0;                   ///< of the device [s]
-  HandlePhysics linear, angular;      ///< of the device
+  double delay = 0;  ///< [s]
+  HandlePhysics linear, angular;
+};
+
+/// What a recording says of all of its ticks; of several hands, the device of the first is here.
+struct RecordingHeader : RecordedDevice {
+  double period = 1e-3;                ///< [s]
+  std::vector<RecordedDevice> others;  ///< of hands beside the first
+  std::vector<std::string> channels;   ///< names of a tick's
   RecordingNotes notes;
   RecordedMechanism mechanism;
   std::vector<std::string> states;  ///< names of the values of the channel "state"; or none
@@ -72,6 +85,9 @@ struct RecordingHeader {
   std::string Note(std::string_view wanted) const;
   /// A note that is a number; a value of its own where there is none.
   double Number(std::string_view wanted, double otherwise) const;
+  int hands() const { return static_cast<int>(others.size()) + 1; }
+  /// The key of a note about a hand, counted from 0: "grasp", "grasp_2", ..
+  static std::string KeyOf(std::string_view key, int hand);
   /// A record with everything sized as the names say.
   TickRecord EmptyTick() const;
 };

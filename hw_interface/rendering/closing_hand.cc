@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "vmech/base/rotation_error.h"
+#include "vmech/base/screw_algebra.h"
 
 namespace vmech {
 namespace {
@@ -30,11 +31,11 @@ void ClosingHand::Open() noexcept {
   change_.setZero();
 }
 
-CoupledStatus ClosingHand::Step(const Posed& X_WH, const Vector6d& V_WH,
-                                CoupledDynamics* dynamics) noexcept {
-  const GraspFrame grasp = dynamics->pose().grasp();
-  const Vector6d V_WG = dynamics->V_WG() + change_;
-  const Vector6d e = HandError(dynamics->X_WG(), X_WH) - step_ * V_WG;
+void ClosingHand::BeforeStep(const Posed& X_WH, const Vector6d& V_WH, int hand,
+                             CoupledDynamics* dynamics) noexcept {
+  const GraspFrame grasp = dynamics->pose().grasp(hand);
+  const Vector6d V_WG = dynamics->V_WG(hand) + change_;
+  const Vector6d e = HandError(dynamics->X_WG(hand), X_WH) - step_ * V_WG;
   const Vector6d slip = V_WH - V_WG;
   const Vector6d pull = coupling_.stiffness.cwiseProduct(e) + coupling_.damping.cwiseProduct(slip);
   Vector6d share;
@@ -42,19 +43,22 @@ CoupledStatus ClosingHand::Step(const Posed& X_WH, const Vector6d& V_WH,
       Vector3d::Constant(ShareOf(pull.tail<3>().norm(), kLever * hold_));
   if (share.minCoeff() < 1) {
     const Posed X_WB = dynamics->pose().X_WB(grasp.node);
-    const Posed X_WG = Displaced(dynamics->X_WG(), e - share.cwiseProduct(e));
-    dynamics->GraspAt({grasp.node, X_WB.inverse() * X_WG, grasp.kind});
+    const Posed X_WG = Displaced(dynamics->X_WG(hand), e - share.cwiseProduct(e));
+    dynamics->GraspAt({grasp.node, X_WB.inverse() * X_WG, grasp.kind}, hand);
   }
   // The frame that has slid has another velocity on a turning link.
-  const Vector6d before = dynamics->V_WG(), expected = before + change_;
-  const Posed X_asked = Displaced(dynamics->X_WG(), share.cwiseProduct(e) + step_ * expected);
-  const bool first = hold_ == 0;
-  if (first) dynamics->LetGo();
-  const CoupledStatus status = dynamics->Step(X_asked, expected + share.cwiseProduct(slip));
-  if (first) dynamics->GraspAt(dynamics->pose().grasp());
+  V_WG_ = dynamics->V_WG(hand);
+  const Vector6d expected = V_WG_ + change_;
+  const Posed X_asked = Displaced(dynamics->X_WG(hand), share.cwiseProduct(e) + step_ * expected);
+  dynamics->SetHand({FrameOf(X_asked), ScrewOf(expected + share.cwiseProduct(slip))}, hand);
+  if (hold_ == 0) dynamics->LetGo(hand);
+}
+
+void ClosingHand::AfterStep(CoupledStatus status, int hand, CoupledDynamics* dynamics) noexcept {
+  if (hold_ == 0) dynamics->GraspAt(dynamics->pose().grasp(hand), hand);
   hold_ += step_ * rate_;
-  Foresee(status == CoupledStatus::kMoved ? (dynamics->V_WG() - before).eval() : Vector6d::Zero());
-  return status;
+  const bool moved = status == CoupledStatus::kMoved;
+  Foresee(moved ? (dynamics->V_WG(hand) - V_WG_).eval() : Vector6d::Zero());
 }
 
 void ClosingHand::Foresee(const Vector6d& change) noexcept {

@@ -27,9 +27,11 @@ class ClosingHand {
   void Hold() noexcept { hold_ = full_; }
   /// False once it holds what the coupling can pull.
   bool closing() const noexcept { return hold_ < full_; }
-  /// A step of the mechanism with a hand at X_WH, moving with V_WH. In the first nothing pulls yet.
-  [[nodiscard]] CoupledStatus Step(const Posed& X_WH, const Vector6d& V_WH,
-                                   CoupledDynamics* dynamics) noexcept;
+  /// Before a step of the mechanism with this hand of it at X_WH, moving with V_WH: slides the
+  /// grasp frame and sets the hand. In the first step nothing pulls yet.
+  void BeforeStep(const Posed& X_WH, const Vector6d& V_WH, int hand,
+                  CoupledDynamics* dynamics) noexcept;
+  void AfterStep(CoupledStatus status, int hand, CoupledDynamics* dynamics) noexcept;
 
   /// Largest force that it holds in the next step [N].
   double hold() const noexcept { return hold_; }
@@ -40,6 +42,7 @@ class ClosingHand {
   HandCoupling coupling_;
   double rate_, step_, full_;
   double hold_ = 0;                     // F now [N]
+  Vector6d V_WG_ = Vector6d::Zero();    // before the step
   Vector6d change_ = Vector6d::Zero();  // of V_WG in the last step
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -13,8 +14,7 @@
 namespace vmech {
 namespace {
 
-constexpr int kOwnChannels = 4;
-constexpr double kFade = 0.02;  // [s]: of the end of the wrench on a hand that has let go
+constexpr int kHandChannels = 3;
 
 double DistanceToLine(const Vector3d& p, const Vector3d& from, const Vector3d& to) {
   const Vector3d way = to - from;
@@ -35,17 +35,26 @@ double DistanceToLink(const Link& link, const Vector3d& p) {
   return distance;
 }
 
-HandCoupling AtTheMechanism(const CoupledTickOptions& options) {
+std::vector<CoupledGrasp> GraspsOf(const KinematicTree& tree, std::span<const CoupledHand> hands,
+                                   const CoupledTickOptions& options) {
   options.Validate();
-  HandCoupling coupling = options.coupling;
-  coupling.stiffness /= options.scale;
-  coupling.damping /= options.scale;
-  coupling.max_force /= options.scale;
-  coupling.max_moment /= options.scale;
-  return coupling;
+  std::vector<CoupledGrasp> grasps;
+  for (const CoupledHand& hand : hands) {
+    grasps.push_back(
+        {GraspFrameOf(tree, hand.grasp), AtTheMechanism(hand.coupling, options.scale)});
+  }
+  return grasps;
 }
 
 }  // namespace
+
+HandCoupling AtTheMechanism(HandCoupling coupling, double scale) {
+  coupling.stiffness /= scale;
+  coupling.damping /= scale;
+  coupling.max_force /= scale;
+  coupling.max_moment /= scale;
+  return coupling;
+}
 
 void CoupledTickOptions::Validate() const {
   CheckRange("CoupledTickOptions", "scale", scale, 1e-6, 1e3);
@@ -55,19 +64,31 @@ void CoupledTickOptions::Validate() const {
 
 CoupledTick::CoupledTick(const KinematicTree& tree, int grasp, const VectorXd& q, double period,
                          const CoupledTickOptions& options)
+    : CoupledTick(tree, std::array{CoupledHand{grasp, options.coupling}}, q, period, options) {}
+
+CoupledTick::CoupledTick(const KinematicTree& tree, std::span<const CoupledHand> hands,
+                         const VectorXd& q, double period, const CoupledTickOptions& options)
     : tree_(tree),
       options_(options),
-      grasp_(GraspFrameOf(tree, grasp)),
-      dynamics_(tree, grasp_, AtTheMechanism(options), period, q),
+      dynamics_(tree, GraspsOf(tree, hands, options), period, q),
       period_(period),
-      fade_(std::exp(-period / kFade)),
-      compliance_(ScrewOf((options.coupling.stiffness.array() > 0)
-                              .select(options.coupling.stiffness.cwiseInverse(), 0))),
-      closing_(AtTheMechanism(options), options.grasp_rate / options.scale, period),
-      peaks_(tree.mechanism) {}
+      shares_(static_cast<int>(hands.size())),
+      paid_(hands.size()),
+      weights_(hands.size()),
+      frames_(hands.size()),
+      peaks_(tree.mechanism) {
+  for (const CoupledGrasp& grasp : GraspsOf(tree, hands, options)) {
+    hands_.push_back(
+        {grasp.frame, ClosingHand(grasp.coupling, options.grasp_rate / options.scale, period), {}});
+  }
+}
 
 std::vector<std::string> CoupledTick::ChannelNames() const {
-  std::vector<std::string> names{"off_position", "off_rotation", "coupling_force", "state"};
+  std::vector<std::string> names{"off_position", "off_rotation", "coupling_force"};
+  for (int i = 1; i < hands(); ++i) {
+    for (int k = 0; k < kHandChannels; ++k) names.push_back(fmt::format("{}_{}", names[k], i + 1));
+  }
+  names.emplace_back("state");
   peaks_.AppendNames(&names);
   return names;
 }
@@ -78,9 +99,9 @@ std::vector<std::string> CoupledTick::StateNames() const {
           "stopped", "slips; stopped", "at limit; stopped", "slips at limit; stopped"};
 }
 
-bool CoupledTick::GraspAt(const Posed& X_WH) noexcept {
+bool CoupledTick::HandGraspsAt(int hand, const Posed& X_WH) noexcept {
   double nearest = std::numeric_limits<double>::infinity();
-  vmech::GraspFrame grasp = grasp_;
+  vmech::GraspFrame grasp = hands_[hand].named;
   for (size_t l = 0; l < tree_.mechanism.links.size(); ++l) {
     const int node = tree_.NodeOfLink(static_cast<int>(l));
     if (node < 0) continue;
@@ -93,42 +114,50 @@ bool CoupledTick::GraspAt(const Posed& X_WH) noexcept {
     grasp.node = node;
     grasp.X_BG = X_BH;
   }
-  dynamics_.GraspAt(grasp);
-  closing_.Open();
-  fading_ += felt_;
-  felt_ = {};
-  holds_ = true;
+  dynamics_.GraspAt(grasp, hand);
+  hands_[hand].closing.Open();
+  hands_[hand].holds = true;
   return true;
 }
 
 void CoupledTick::Reset() noexcept {
-  dynamics_.GraspAt(grasp_);
+  for (int i = 0; i < hands(); ++i) {
+    Hand& hand = hands_[i];
+    dynamics_.GraspAt(hand.named, i);
+    hand.closing.Hold();
+    hand.holds = true;
+    hand.at.V = {};
+    hand.seen = false;
+    hand.worked = 0;
+  }
   dynamics_.Stop();
-  closing_.Hold();
-  holds_ = true;
-  felt_ = fading_ = hand_.V = {};
-  has_hand_ = false;
+  shares_.Reset(dynamics_.Energy());
   peaks_.Reset();
   summary_ = {};
 }
 
 TickOutput CoupledTick::Step(const TickInput& input, std::span<double> channels) noexcept {
-  if (input.fresh || input.observed || !has_hand_) ReadHand(input);
-  dynamics_.Within(input.room.Times(1 / options_.scale));
-  if (input.debt > 0) dynamics_.Owe(input.debt / options_.scale);
-  const CoupledStatus status = Move(input);
   TickOutput out;
-  if (status == CoupledStatus::kFailed) {
-    out.status = TickStatus::kFailed;
-    return out;
-  }
-  out.status = status == CoupledStatus::kStopped ? TickStatus::kHeld : TickStatus::kOk;
-  Feel(input.held);
-  out.F_Ho_W = Vector6Of(felt_ + fading_);
-  // What the mechanism does alone is no business of the hand's.
-  out.stored_energy = stored_ + FadingEnergy();
-  Account(status, channels);
+  StepHands({&input, 1}, {&out, 1}, channels);
   return out;
+}
+
+void CoupledTick::StepHands(std::span<const TickInput> inputs, std::span<TickOutput> outputs,
+                            std::span<double> channels) noexcept {
+  for (int i = 0; i < hands(); ++i) TakeHand(inputs[i], i);
+  const CoupledStatus status = Move();
+  for (TickOutput& out : outputs) {
+    out = {};
+    if (status == CoupledStatus::kFailed) out.status = TickStatus::kFailed;
+    if (status == CoupledStatus::kStopped) out.status = TickStatus::kHeld;
+  }
+  if (status == CoupledStatus::kFailed) return;
+  ShareEnergy(inputs);
+  for (int i = 0; i < hands(); ++i) {
+    outputs[i].F_Ho_W = Vector6Of(-options_.scale * dynamics_.pull(i));
+    outputs[i].stored_energy = StoredEnergy(inputs[i].held, i);
+  }
+  Account(status, channels);
 }
 
 /// The coupling carries what moves the mechanism and what it does not allow in one.
@@ -136,57 +165,89 @@ void CoupledTick::Show(TickPicture* picture) const noexcept {
   picture->q = dynamics_.q();
   picture->v = dynamics_.v();
   picture->joints = dynamics_.joints();
-  picture->X_WH = PoseOf(hand_.X);
-  picture->X_WG = dynamics_.X_WG();
-  picture->dynamic = dynamics_.w();
+  for (int i = 0; i < hands(); ++i) {
+    HandPicture& hand = picture->hand(i);
+    hand.X_WH = PoseOf(hands_[i].at.X);
+    hand.X_WG = dynamics_.X_WG(i);
+    hand.dynamic = dynamics_.w(i);
+  }
 }
 
-CoupledStatus CoupledTick::Move(const TickInput& input) noexcept {
-  if (!input.held && holds_) {
-    dynamics_.LetGo();
-    fading_ += felt_;
-    felt_ = {};
-    holds_ = false;
+/// Where the hand is, what its device can do, and whether it holds.
+void CoupledTick::TakeHand(const TickInput& input, int i) noexcept {
+  Hand& hand = hands_[i];
+  const bool sees = input.fresh || input.observed != nullptr;
+  if (sees || (input.held && !hand.seen)) ReadHand(input, &hand);
+  if (!sees && !input.held) hand.at.V = {};
+  dynamics_.Within(input.room.Times(1 / options_.scale), i);
+  if (input.debt > 0) dynamics_.Owe(input.debt / options_.scale);
+  if (input.held == hand.holds) return;
+  hand.holds = input.held;
+  if (input.held) {  // it comes while others move the mechanism, and closes on its grasp frame
+    dynamics_.GraspAt(hand.named, i);
+    hand.closing.Open();
+  } else {
+    dynamics_.Loosen(options_.grasp_rate / options_.scale, i);
   }
-  if (holds_ && closing_.closing()) {
-    return closing_.Step(PoseOf(hand_.X), Vector6Of(hand_.V), &dynamics_);
-  }
-  return dynamics_.Step(hand_);
 }
 
-void CoupledTick::Feel(bool held) noexcept {
-  Fade();
+CoupledStatus CoupledTick::Move() noexcept {
+  for (int i = 0; i < hands(); ++i) {
+    Hand& hand = hands_[i];
+    if (hand.holds && hand.closing.closing()) {
+      hand.closing.BeforeStep(PoseOf(hand.at.X), Vector6Of(hand.at.V), i, &dynamics_);
+    } else {
+      dynamics_.SetHand(hand.at, i);
+    }
+    frames_[i] = dynamics_.pose().grasp_frame(i);
+  }
+  const CoupledStatus status = dynamics_.Step();
+  for (int i = 0; i < hands(); ++i) {
+    Hand& hand = hands_[i];
+    if (hand.holds && hand.closing.closing()) hand.closing.AfterStep(status, i, &dynamics_);
+  }
+  return status;
+}
+
+/// What the mechanism loses is taken from the hands whose debts it pays, else from all that hold.
+void CoupledTick::ShareEnergy(std::span<const TickInput> inputs) noexcept {
+  double debts = 0;
+  for (const TickInput& input : inputs) debts += input.debt;
+  for (int i = 0; i < hands(); ++i) {
+    Hand& hand = hands_[i];
+    if (hands() > 1) {
+      const Screw way = HandError(frames_[i], dynamics_.pose().grasp_frame(i));
+      hand.worked += Power(dynamics_.pull(i), way);
+    }
+    paid_[i] = dynamics_.CouplingEnergy(i) + hand.worked;
+    const double weight = debts > 0 ? inputs[i].debt : 1;
+    weights_[i] = hand.holds ? weight : 0;
+  }
+  shares_.Update(dynamics_.Energy(), paid_, weights_);
+}
+
+/// What the mechanism does without a hand is no business of its.
+double CoupledTick::StoredEnergy(bool held, int i) noexcept {
+  Hand& hand = hands_[i];
   if (held) {
-    felt_ = -options_.scale * dynamics_.pull();
-    stored_ = options_.scale * dynamics_.Energy();
+    hand.stored = shares_[i];
+    hand.paid_when_held = paid_[i];
   }
-}
-
-/// The wrench of a spring that nothing holds any more. It falls slowly; where it drives the hand it
-/// falls with what that takes out of the spring,
-///
-///   E = F'K^-1 F / 2,   (1 + c)/2 F.dX <= (1 - c^2) E   by   c = 1 - F.dX/2E.
-void CoupledTick::Fade() noexcept {
-  if (Power(fading_, fading_) == 0) return;
-  const double force = Length(fading_.linear), most = options_.grasp_rate * period_;
-  double left = fade_;
-  if (force * (1 - left) > most) left = 1 - most / force;
-  const double energy = FadingEnergy(), work = period_ * Power(fading_, hand_.V);
-  if (work > 0) left *= std::max(0.0, 1 - work / (2 * energy));
-  fading_ = left * fading_;
-}
-
-double CoupledTick::FadingEnergy() const noexcept {
-  return 0.5 * Power(fading_, Scaled(compliance_, fading_));
+  return options_.scale * (hand.stored + (paid_[i] - hand.paid_when_held));
 }
 
 void CoupledTick::Account(CoupledStatus status, std::span<double> channels) noexcept {
-  channels[0] = Length(dynamics_.stretch().linear);
-  channels[1] = Length(dynamics_.stretch().angular);
-  channels[2] = Length(dynamics_.pull().linear);
-  channels[3] = static_cast<double>(dynamics_.slipping() + 2 * dynamics_.at_limit() +
-                                    4 * (status == CoupledStatus::kStopped));
-  peaks_.Add(dynamics_.joints(), channels.subspan(kOwnChannels));
+  for (int i = 0; i < hands(); ++i) {
+    const std::span<double> own = channels.subspan(i * kHandChannels, kHandChannels);
+    own[0] = Length(dynamics_.stretch(i).linear);
+    own[1] = Length(dynamics_.stretch(i).angular);
+    own[2] = Length(dynamics_.pull(i).linear);
+    if (hands_[i].holds) summary_.farthest = std::max(summary_.farthest, own[0]);
+  }
+  const std::span<double> rest = channels.subspan(hands() * kHandChannels);
+  rest[0] = static_cast<double>(dynamics_.slipping() + 2 * dynamics_.at_limit() +
+                                4 * (status == CoupledStatus::kStopped));
+  peaks_.Add(dynamics_.joints(), rest.subspan(1));
   ++summary_.ticks;
   summary_.at_limit += dynamics_.at_limit();
   summary_.slipping += dynamics_.slipping();
@@ -194,7 +255,6 @@ void CoupledTick::Account(CoupledStatus status, std::span<double> channels) noex
   if (status == CoupledStatus::kMoved) {
     summary_.worst_closure = std::max(summary_.worst_closure, dynamics_.closure());
   }
-  summary_.farthest = std::max(summary_.farthest, channels[0]);
 }
 
 std::string CoupledSummary::BriefReport() const {
@@ -209,20 +269,20 @@ std::string CoupledTick::FullReport() const {
 }
 
 /// As observed, or differences through a filter of first order.
-void CoupledTick::ReadHand(const TickInput& input) noexcept {
+void CoupledTick::ReadHand(const TickInput& input, Hand* hand) noexcept {
   if (input.observed) {
-    hand_ = *input.observed;
-    has_hand_ = true;
+    hand->at = *input.observed;
+    hand->seen = true;
     return;
   }
   const Frame X = FrameOf(input.X_WH);
-  if (has_hand_) {
+  if (hand->seen) {
     const double elapsed = std::max(input.elapsed, period_);
     const double share = options_.smoothing > 0 ? 1 - std::exp(-elapsed / options_.smoothing) : 1;
-    hand_.V += share * ((1 / elapsed) * HandError(hand_.X, X) - hand_.V);
+    hand->at.V += share * ((1 / elapsed) * HandError(hand->at.X, X) - hand->at.V);
   }
-  hand_.X = X;
-  has_hand_ = true;
+  hand->at.X = X;
+  hand->seen = true;
 }
 
 }  // namespace vmech

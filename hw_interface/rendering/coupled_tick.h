@@ -1,15 +1,20 @@
 #pragma once
 
+#include <span>
+#include <string>
+#include <vector>
+
 #include "vmech/dynamics/in_hand/coupled_dynamics.h"
 #include "vmech/hw_interface/rendering/closing_hand.h"
+#include "vmech/hw_interface/rendering/energy_shares.h"
 #include "vmech/hw_interface/rendering/peak_forces.h"
 #include "vmech/hw_interface/rendering/tick.h"
 
 namespace vmech {
 
 struct CoupledTickOptions {
-  /// Spring and damper as the hand feels them (CouplingOf). Stiffer feels truer and calls for a
-  /// faster device.
+  /// Spring and damper as the only hand feels them (ChooseCoupling). Stiffer feels truer and calls
+  /// for a faster device.
   HandCoupling coupling;
   /// Force at the hand over force at the mechanism, in [1e-6, 1e3]: 0.1 makes it ten times as
   /// light.
@@ -23,6 +28,15 @@ struct CoupledTickOptions {
   /// @throws std::invalid_argument naming field, value and range.
   void Validate() const;
 };
+
+/// One of several hands that hold a mechanism.
+struct CoupledHand {
+  int grasp = -1;         ///< of the mechanism, by index
+  HandCoupling coupling;  ///< as this hand feels it
+};
+
+/// A coupling that a hand feels, as it is at a mechanism whose forces are scaled.
+HandCoupling AtTheMechanism(HandCoupling coupling, double scale);
 
 /// Ticks in which each thing happened since the hand took hold.
 struct CoupledSummary {
@@ -40,23 +54,34 @@ struct CoupledSummary {
 /// a spring and a damper (CoupledDynamics). The hand feels true inertia at frequencies far below
 /// that of the mechanism on the spring, needs no acceleration, and can let freedoms go that its
 /// grasp does not reach. A hand that closes on a link, however fast, takes hold of it with a force
-/// that grows no faster than `grasp_rate` (ClosingHand); one that lets go feels the last wrench
-/// fade out as slowly, and the mechanism moves alone. No allocation after construction.
+/// that grows no faster than `grasp_rate` (ClosingHand); where one lets go, the last wrench fades
+/// out as slowly on both sides (FadingWrench), and the mechanism moves on. Each of several hands
+/// has a coupling of its own, and is told of the energy that it has stored itself (EnergyShares).
+/// No allocation after construction.
 class CoupledTick : public Tick {
  public:
   /// Keeps a reference to the tree. `q`: a closed pose, where the hand takes hold.
   /// @throws std::invalid_argument as Validate and CoupledDynamics.
   CoupledTick(const KinematicTree& tree, int grasp, const VectorXd& q, double period,
               const CoupledTickOptions& options);
+  /// In several hands, each with its own coupling in place of the options'.
+  CoupledTick(const KinematicTree& tree, std::span<const CoupledHand> hands, const VectorXd& q,
+              double period, const CoupledTickOptions& options);
 
   std::vector<std::string> ChannelNames() const override;
   std::vector<std::string> StateNames() const override;
-  Posed GraspFrame() const noexcept override { return dynamics_.X_WG(); }
+  Posed GraspFrame() const noexcept override { return HeldFrame(0); }
   bool UsesObservedHand() const noexcept override { return true; }
   /// The link whose skeleton, the lines between its anchors, is nearest; held as it is there.
-  bool GraspAt(const Posed& X_WH) noexcept override;
+  bool GraspAt(const Posed& X_WH) noexcept override { return HandGraspsAt(0, X_WH); }
   void Reset() noexcept override;
   TickOutput Step(const TickInput& input, std::span<double> channels) noexcept override;
+
+  int hands() const noexcept override { return static_cast<int>(hands_.size()); }
+  Posed HeldFrame(int hand) const noexcept override { return dynamics_.X_WG(hand); }
+  bool HandGraspsAt(int hand, const Posed& X_WH) noexcept override;
+  void StepHands(std::span<const TickInput> inputs, std::span<TickOutput> outputs,
+                 std::span<double> channels) noexcept override;
 
   void Show(TickPicture* picture) const noexcept override;
 
@@ -67,25 +92,31 @@ class CoupledTick : public Tick {
   std::string FullReport() const override;
 
  private:
-  void ReadHand(const TickInput& input) noexcept;
-  CoupledStatus Move(const TickInput& input) noexcept;
-  void Feel(bool held) noexcept;
-  void Fade() noexcept;
-  double FadingEnergy() const noexcept;
+  struct Hand {
+    vmech::GraspFrame named;  // where the hand takes hold by name
+    ClosingHand closing;
+    MovingFrame at;
+    bool seen = false, holds = true;
+    double worked = 0;          // by the coupling on the mechanism [J]
+    double stored = 0;          // of the mechanism, when it was last held [J]
+    double paid_when_held = 0;  // P of EnergyShares, then [J]
+  };
+
+  void TakeHand(const TickInput& input, int hand) noexcept;
+  void ReadHand(const TickInput& input, Hand* hand) noexcept;
+  CoupledStatus Move() noexcept;
+  void ShareEnergy(std::span<const TickInput> inputs) noexcept;
+  double StoredEnergy(bool held, int hand) noexcept;
   void Account(CoupledStatus status, std::span<double> channels) noexcept;
 
   const KinematicTree& tree_;
   CoupledTickOptions options_;
-  vmech::GraspFrame grasp_;  // where the hand takes hold by name
   CoupledDynamics dynamics_;
-  double period_, fade_;  // fade_: what is left of a fading wrench after a period
-  Screw compliance_;      // K^-1, zero where K is
-  ClosingHand closing_;
-  bool has_hand_ = false, holds_ = true;
-  Screw felt_;         // of the mechanism that is held
-  Screw fading_;       // of one that was
-  double stored_ = 0;  // when it was last held [J]
-  MovingFrame hand_;
+  double period_;
+  std::vector<Hand> hands_;
+  EnergyShares shares_;
+  std::vector<double> paid_, weights_;  // for these
+  std::vector<Frame> frames_;           // the grasp frames before a step
   PeakForces peaks_;
   CoupledSummary summary_;
 };

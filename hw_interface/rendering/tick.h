@@ -69,6 +69,24 @@ class Tick {
                                         std::span<double> channels) noexcept = 0;
   /// Fills a picture that has its sizes: q [nq] and joints. Nothing by default.
   virtual void Show(TickPicture* picture) const noexcept { (void)picture; }
+
+  // A mechanism in several hands at once; by default there is one, and the functions above are its.
+  /// `hand`, counted from 0, in [0, hands()).
+  virtual int hands() const noexcept { return 1; }
+  virtual Posed HeldFrame(int hand) const noexcept {
+    (void)hand;
+    return GraspFrame();
+  }
+  virtual bool HandGraspsAt(int hand, const Posed& X_WH) noexcept {
+    (void)hand;
+    return GraspAt(X_WH);
+  }
+  /// An input and an output for each hand. One that has not come yet, or is lost, does not hold.
+  virtual void StepHands(std::span<const TickInput> inputs, std::span<TickOutput> outputs,
+                         std::span<double> channels) noexcept {
+    outputs[0] = Step(inputs[0], channels);
+  }
+
   /// What became of the mechanism, in lines; nothing by default.
   virtual std::string FullReport() const { return {}; }
 };

@@ -3,15 +3,23 @@
 namespace vmech {
 
 TickOutput ShownTick::Step(const TickInput& input, std::span<double> channels) noexcept {
-  const TickOutput output = tick_->Step(input, channels);
-  if (pictures_.wanted()) {
-    TickPicture& picture = pictures_.back();
-    tick_->Show(&picture);
-    picture.F_Ho_W = output.F_Ho_W;
-    picture.holds = input.held;
-    pictures_.Publish();
-  }
+  TickOutput output;
+  StepHands({&input, 1}, {&output, 1}, channels);
   return output;
+}
+
+void ShownTick::StepHands(std::span<const TickInput> inputs, std::span<TickOutput> outputs,
+                          std::span<double> channels) noexcept {
+  tick_->StepHands(inputs, outputs, channels);
+  if (!pictures_.wanted()) return;
+  TickPicture& picture = pictures_.back();
+  tick_->Show(&picture);
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    HandPicture& hand = picture.hand(static_cast<int>(i));
+    hand.F_Ho_W = outputs[i].F_Ho_W;
+    hand.holds = inputs[i].held;
+  }
+  pictures_.Publish();
 }
 
 }  // namespace vmech

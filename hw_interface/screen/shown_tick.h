@@ -24,6 +24,13 @@ class ShownTick : public Tick {
   void Reset() noexcept override { tick_->Reset(); }
   bool UsesObservedHand() const noexcept override { return tick_->UsesObservedHand(); }
   TickOutput Step(const TickInput& input, std::span<double> channels) noexcept override;
+  int hands() const noexcept override { return tick_->hands(); }
+  Posed HeldFrame(int hand) const noexcept override { return tick_->HeldFrame(hand); }
+  bool HandGraspsAt(int hand, const Posed& X_WH) noexcept override {
+    return tick_->HandGraspsAt(hand, X_WH);
+  }
+  void StepHands(std::span<const TickInput> inputs, std::span<TickOutput> outputs,
+                 std::span<double> channels) noexcept override;
   void Show(TickPicture* picture) const noexcept override { tick_->Show(picture); }
   std::string FullReport() const override { return tick_->FullReport(); }
 

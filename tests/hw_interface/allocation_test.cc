@@ -108,6 +108,40 @@ TEST(CoupledTick, AllocatesNothingWhileItsHandLeadsItSlipsAndLetsGo) {
   }
 }
 
+/// Two hands, of which the second comes late, lets go and comes back.
+TEST(CoupledTick, AllocatesNothingInTwoHands) {
+  for (const char* name : {"two-link-arm", "four-bar", "stewart-gough"}) {
+    Mechanism mechanism = Example(name);
+    const int handle = FindGrasp(mechanism, "handle");
+    mechanism.grasps.push_back(mechanism.grasps[handle]);
+    mechanism.grasps.back().X_LG.p.x() -= 0.1;
+    const KinematicTree tree = BuildKinematicTree(mechanism);
+    CoupledTickOptions options;
+    options.coupling.stiffness.setConstant(1e4);
+    options.coupling.damping.setConstant(50);
+    options.coupling.max_force = 50;
+    const int second = static_cast<int>(mechanism.grasps.size()) - 1;
+    const std::array hands{CoupledHand{handle, options.coupling},
+                           CoupledHand{second, options.coupling}};
+    CoupledTick tick(tree, hands, ClosedStart(tree), 1e-3, options);
+    std::vector<double> channels(tick.ChannelNames().size());
+    std::array inputs{FreshInput(tick.HeldFrame(0), 1e-3), FreshInput(tick.HeldFrame(1), 1e-3)};
+    std::array<TickOutput, 2> outputs;
+    TickPicture picture;
+    picture.others.resize(1);
+    tick.Show(&picture);
+    const long before = allocations;
+    for (int k = 0; k < 2000; ++k) {
+      for (TickInput& input : inputs) input.X_WH.p.x() += 1e-4 * std::sin(0.01 * k);
+      inputs[1].held = k % 500 > 100;
+      tick.StepHands(inputs, outputs, channels);
+      tick.Show(&picture);
+      ASSERT_NE(outputs[0].status, TickStatus::kFailed);
+    }
+    EXPECT_EQ(allocations - before, 0) << name;
+  }
+}
+
 class EveryTick : public testing::TestWithParam<std::tuple<std::string, Architecture>> {};
 
 /// A hand that pulls on the constraints all the time: rescues, limits and closing steps included.
