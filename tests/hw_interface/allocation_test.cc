@@ -114,6 +114,7 @@ TEST(CoupledTick, AllocatesNothingInTwoHands) {
     Mechanism mechanism = Example(name);
     const int handle = FindGrasp(mechanism, "handle");
     mechanism.grasps.push_back(mechanism.grasps[handle]);
+    mechanism.grasps.back().name = "second";
     mechanism.grasps.back().X_LG.p.x() -= 0.1;
     const KinematicTree tree = BuildKinematicTree(mechanism);
     CoupledTickOptions options;
