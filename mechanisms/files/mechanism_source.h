@@ -39,6 +39,7 @@ class MechanismSource {
   const CountingUnits& units() const { return scope_.units; }
   /// The parameters; those that others declare here are seen by the expressions of the file.
   ParameterTable& parameters() { return table_; }
+  const ParameterTable& parameters() const { return table_; }
   /// What the parameters are, as of the last reading.
   const NamedQuantities<double>& values() const { return scope_.values; }
   std::vector<StatedParameter> stated() const;
