@@ -7,21 +7,40 @@ class Marks {
     this.shapes = shapes;
     this.nodes = nodes;
     this.groups = {frames: [], centres: [], grasps: [], cuts: [], limits: []};
+    this.shown = {};
+    this.materials = makeMarkMaterials();
+    this.build();
+  }
+
+  build() {
+    const {scene} = this;
     this.addFrames();
     this.addCentres();
     this.addGrasps();
-    scene.joints.forEach((joint, index) => {
+    scene.joints.forEach((joint) => {
       if (joint.cut) this.addCut(joint);
-      joint.freedoms.forEach((freedom, k) => this.addLimit(joint, index, freedom, k));
+      joint.freedoms.forEach((freedom) => this.addLimit(joint, freedom));
     });
   }
 
+  // Marks for other numbers of the mechanism; their materials stay.
+  rebuild() {
+    for (const objects of Object.values(this.groups)) {
+      for (const object of objects.splice(0)) {
+        object.parent.remove(object);
+        object.traverse((part) => { if (part.geometry) part.geometry.dispose(); });
+      }
+    }
+    this.build();
+  }
+
   show(name, visible) {
+    this.shown[name] = visible;
     for (const object of this.groups[name]) object.visible = visible;
   }
 
   put(name, link, object) {
-    object.visible = false;
+    object.visible = Boolean(this.shown[name]);
     object.castShadow = false;
     this.nodes.links[link].add(object);
     this.groups[name].push(object);
@@ -34,18 +53,16 @@ class Marks {
       for (const anchor of link.anchors) {
         addTriad(lines, colours, anchor.pose, 0.075 * this.sizes.length);
       }
-      this.put("frames", index, triadLines(lines, colours));
+      this.put("frames", index, this.triadLines(lines, colours));
     });
   }
 
   // The usual sign of a centre of gravity: a ball in quarters of black and white.
   addCentres() {
     const ball = quarteredBall(0.016 * this.sizes.length);
-    const material = new THREE.MeshBasicMaterial({vertexColors: THREE.VertexColors,
-      depthTest: false, transparent: true});
     this.scene.links.forEach((link, index) => {
       if (!(link.mass > 0) || index === this.scene.ground) return;
-      const mesh = new THREE.Mesh(ball, material);
+      const mesh = new THREE.Mesh(ball, this.materials.quarters);
       mesh.position.fromArray(link.centre);
       mesh.renderOrder = 5;
       this.put("centres", index, mesh);
@@ -57,11 +74,11 @@ class Marks {
     for (const grasp of this.scene.grasps) {
       const group = new THREE.Group();
       const ring = new THREE.Mesh(new THREE.TorusBufferGeometry(2.1 * rod, 0.35 * rod, 10, 36),
-          new THREE.MeshStandardMaterial({color: shade(0x0b8f63), roughness: 0.5}));
+          this.materials.grasp);
       const lines = [], colours = [];
       addTriad(lines, colours, [0, 0, 0, 1, 0, 0, 0], 0.07 * length);
       group.add(ring);
-      if (!grasp.point) group.add(triadLines(lines, colours));
+      if (!grasp.point) group.add(this.triadLines(lines, colours));
       group.applyMatrix(matrixOf(grasp.pose));
       this.put("grasps", grasp.link, group);
     }
@@ -70,10 +87,9 @@ class Marks {
   addCut(joint) {
     const {rod} = this.sizes, pose = anchorOf(this.scene, joint, "first").pose;
     const group = new THREE.Group(), kDashes = 8;
-    const material = new THREE.MeshBasicMaterial({color: shade(0xd6336c)});
     for (let k = 0; k < kDashes; ++k) {
       const dash = new THREE.Mesh(new THREE.TorusBufferGeometry(
-          3.1 * rod, 0.24 * rod, 6, 6, Math.PI / kDashes), material);
+          3.1 * rod, 0.24 * rod, 6, 6, Math.PI / kDashes), this.materials.cut);
       dash.rotation.z = 2 * Math.PI * k / kDashes;
       group.add(dash);
     }
@@ -83,12 +99,11 @@ class Marks {
   }
 
   // The range of a turning freedom as a sector, of a sliding one as two stops.
-  addLimit(joint, index, freedom, k) {
+  addLimit(joint, freedom) {
     if (!Number.isFinite(freedom.lower) || !Number.isFinite(freedom.upper)) return;
     if (!kPinTypes.includes(joint.type) && joint.type !== "prismatic") return;
     const pose = anchorOf(this.scene, joint, "first").pose, {bar, rod} = this.sizes;
-    const material = new THREE.MeshBasicMaterial({color: shade(0xd9822b), transparent: true,
-      opacity: 0.4, side: THREE.DoubleSide, depthWrite: false});
+    const material = this.materials.limit;
     const group = new THREE.Group();
     if (freedom.rotation) {
       const sweep = Math.min(2 * Math.PI, freedom.upper - freedom.lower);
@@ -105,6 +120,25 @@ class Marks {
     group.applyMatrix(matrixOf(pose));
     this.put("limits", joint.first.link, group);
   }
+
+  triadLines(lines, colours) {
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.Float32BufferAttribute(lines, 3));
+    geometry.setAttribute("color", new THREE.Float32BufferAttribute(colours, 3));
+    const object = new THREE.LineSegments(geometry, this.materials.lines);
+    object.renderOrder = 4;
+    return object;
+  }
+}
+
+function makeMarkMaterials() {
+  const over = {vertexColors: THREE.VertexColors, depthTest: false, transparent: true};
+  return {
+    lines: new THREE.LineBasicMaterial(over), quarters: new THREE.MeshBasicMaterial(over),
+    grasp: new THREE.MeshStandardMaterial({color: shade(0x0b8f63), roughness: 0.5}),
+    cut: new THREE.MeshBasicMaterial({color: shade(0xd6336c)}),
+    limit: new THREE.MeshBasicMaterial({color: shade(0xd9822b), transparent: true, opacity: 0.4,
+      side: THREE.DoubleSide, depthWrite: false})};
 }
 
 function addTriad(lines, colours, pose, size) {
@@ -113,16 +147,6 @@ function addTriad(lines, colours, pose, size) {
     lines.push(...pose.slice(0, 3), ...sum(pose, axisOf(pose, axis), size));
     colours.push(...kAxisColours[axis], ...kAxisColours[axis]);
   }
-}
-
-function triadLines(lines, colours) {
-  const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute("position", new THREE.Float32BufferAttribute(lines, 3));
-  geometry.setAttribute("color", new THREE.Float32BufferAttribute(colours, 3));
-  const object = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({
-    vertexColors: THREE.VertexColors, depthTest: false, transparent: true}));
-  object.renderOrder = 4;
-  return object;
 }
 
 function quarteredBall(radius) {
