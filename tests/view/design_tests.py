@@ -4,6 +4,8 @@ import time
 
 from selenium.webdriver.common.keys import Keys
 
+from scenes import torus_stl
+
 PARAMETER = {"name": "crank", "unit": "mm", "value": 50, "lower": 25, "upper": 80}
 BAR = 0.034 * 0.16  # m, the radius of a bar of scenes.FourBar, in proportion to its length
 SINGLE = 1e-7       # m, of coordinates in single precision
@@ -99,6 +101,17 @@ class DesignTests:
         self.assertEqual(self.server.done("release"), [])
         self.mouse("up")
         self.wait("return !document.querySelector('.vv-canvas').classList.contains('vv-holding')")
+
+    def test_design_ends_a_recorded_motion_and_keeps_meshes(self):
+        self.serve_design(poses=36, mesh=torus_stl(80))
+        mesh = self.do("return vmechView.boundsOf(3)")
+        self.slide(45)
+        self.lasting()
+        self.assertEqual(self.do("return document.querySelectorAll('.vv-player').length"), 0)
+        self.assertEqual(self.do("return vmechView.poses()"), self.bar.poses(self.server.theta))
+        self.assertEqual(self.do("return vmechView.boundsOf(3)"), mesh)
+        self.assertIn("meshes keep their shape", self.find(
+            "//*[contains(@class, 'vv-note')]").text)
 
     def test_design_in_a_device_and_for_a_watcher(self):
         self.serve_design(kind="haptic")

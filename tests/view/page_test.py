@@ -1,6 +1,7 @@
 """Tests of the page in a real browser. Usage:
 page_test.py SCRIPTS CHROMIUM CHROMEDRIVER FOLDER"""
 
+import base64
 import json
 import math
 import pathlib
@@ -230,9 +231,13 @@ class ServedTest(PageTest):
             self.server.stop()
         errors_of(BROWSER)  # A lost server is told in the console by the browser itself.
 
-    def serve(self, writer=True, port=0, **session):
+    def serve(self, writer=True, port=0, poses=0, mesh=None, **session):
+        """`poses` of a recorded motion; `mesh` of the rocker."""
         self.bar = scenes.FourBar()
-        scene = self.bar.scene(0, session={"socket": "/socket", "kind": "mechanism", **session})
+        session = {"socket": "/socket", "kind": "mechanism", **session}
+        scene = self.bar.scene(poses, session=session)
+        if mesh:
+            scene["links"][3]["mesh"] = base64.b64encode(mesh).decode()
         self.server = FakeServer(page_html(scene, SCRIPTS), self.bar, writer, port)
         BROWSER.get(self.server.address)
         self.wait("return Boolean(window.vmechView) && vmechView.session.received > 1")

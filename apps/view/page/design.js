@@ -120,7 +120,7 @@ class Design {
     this.work = make("p", {class: "vv-hint"});
     const button = (text, title, click) => make("button", {class: "vv-button", text, title,
       on: {click}});
-    this.controls = make("fieldset", {class: "vv-controls"},
+    this.controls = make("fieldset", {class: "vv-controls", "aria-label": "Design"},
         ...this.rows.map((row) => row.element), this.stopped,
         make("div", {class: "vv-row"},
             button("Reset design", "Back to the values of the file", () => this.reset()),

@@ -6,41 +6,42 @@ class Marks {
     this.sizes = shapes.sizes;
     this.shapes = shapes;
     this.nodes = nodes;
-    this.groups = {frames: [], centres: [], grasps: [], cuts: [], limits: []};
-    this.shown = {};
+    // The marks of each kind; null while they are not shown.
+    this.groups = {frames: null, centres: null, grasps: null, cuts: null, limits: null};
     this.materials = makeMarkMaterials();
-    this.build();
   }
 
-  build() {
-    const {scene} = this;
-    this.addFrames();
-    this.addCentres();
-    this.addGrasps();
-    scene.joints.forEach((joint) => {
-      if (joint.cut) this.addCut(joint);
-      joint.freedoms.forEach((freedom) => this.addLimit(joint, freedom));
-    });
+  show(name, visible) {
+    this.clear(name);
+    this.groups[name] = visible ? [] : null;
+    if (visible) this.build(name);
   }
 
   // Marks for other numbers of the mechanism; their materials stay.
   rebuild() {
-    for (const objects of Object.values(this.groups)) {
-      for (const object of objects.splice(0)) {
-        object.parent.remove(object);
-        object.traverse((part) => { if (part.geometry) part.geometry.dispose(); });
-      }
+    for (const [name, objects] of Object.entries(this.groups)) {
+      if (objects) this.show(name, true);
     }
-    this.build();
   }
 
-  show(name, visible) {
-    this.shown[name] = visible;
-    for (const object of this.groups[name]) object.visible = visible;
+  clear(name) {
+    for (const object of this.groups[name] || []) {
+      object.parent.remove(object);
+      object.traverse((part) => { if (part.geometry) part.geometry.dispose(); });
+    }
+  }
+
+  build(name) {
+    const {joints} = this.scene;
+    if (name === "frames") this.addFrames();
+    if (name === "centres") this.addCentres();
+    if (name === "grasps") this.addGrasps();
+    if (name === "cuts") joints.filter((joint) => joint.cut).forEach((joint) => this.addCut(joint));
+    if (name === "limits") joints.forEach((joint) => joint.freedoms.forEach(
+        (freedom) => this.addLimit(joint, freedom)));
   }
 
   put(name, link, object) {
-    object.visible = Boolean(this.shown[name]);
     object.castShadow = false;
     this.nodes.links[link].add(object);
     this.groups[name].push(object);
