@@ -64,7 +64,7 @@ class DesignTests:
         field.send_keys(Keys.CONTROL, "a")
         field.send_keys("90", Keys.ENTER)
         self.assertIn("crank is a number from 25 to 80 mm", self.find(
-            "//*[contains(@class, 'vv-note')]").text)
+            "//*[contains(@class, 'vv-note')]").get_attribute("textContent"))
         self.assertEqual(self.server.done("vary"), [])
         field.send_keys(Keys.CONTROL, "a")
         field.send_keys("45", Keys.ENTER)
@@ -111,7 +111,7 @@ class DesignTests:
         self.assertEqual(self.do("return vmechView.poses()"), self.bar.poses(self.server.theta))
         self.assertEqual(self.do("return vmechView.boundsOf(3)"), mesh)
         self.assertIn("meshes keep their shape", self.find(
-            "//*[contains(@class, 'vv-note')]").text)
+            "//*[contains(@class, 'vv-note')]").get_attribute("textContent"))
 
     def test_design_in_a_device_and_for_a_watcher(self):
         self.serve_design(kind="haptic")
