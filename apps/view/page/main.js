@@ -15,8 +15,9 @@ function openView(root) {
   return view;
 }
 
-// The corners of a part in the axes of its link.
+// The corners of a part in the axes of its link; null if nothing is drawn of it.
 function boundsOf(mesh) {
+  if (!mesh) return null;
   mesh.geometry.computeBoundingBox();
   const {min, max} = mesh.geometry.boundingBox;
   return [min.toArray(), max.toArray()];
