@@ -212,11 +212,7 @@ LiveVariation VaryTick(const HeldMechanism& held, const HapticArguments& argumen
     fmt::print("note: parameters cannot be moved while it is recorded\n");
     return {};
   }
-  std::vector<int> grasps = held.subject.grasps;  // those of the hands first
-  for (int i = 0; i < static_cast<int>(held.tree.mechanism.grasps.size()); ++i) {
-    if (std::find(grasps.begin(), grasps.end(), i) == grasps.end()) grasps.push_back(i);
-  }
-  design->Hold(held.tree, std::move(grasps));
+  design->Hold(held.tree, held.subject.grasps);
   std::unique_ptr<CoupledTick> coupled(static_cast<CoupledTick*>(rendering->tick.release()));
   auto varied = std::make_unique<VariedTick>(std::move(coupled), design->Start());
   LiveVariation variation{varied.get(), std::move(design)};

@@ -63,8 +63,8 @@ Json LiveDesign::Sliders() const {
   return sliders;
 }
 
-void LiveDesign::Hold(const KinematicTree& held, std::vector<int> grasps) {
-  guide_.emplace(&source_, held, std::move(grasps));
+void LiveDesign::Hold(const KinematicTree& held, std::vector<int> hands) {
+  guide_.emplace(&source_, held, std::move(hands));
 }
 
 void LiveDesign::Ask(const nlohmann::json& request) {

@@ -28,7 +28,7 @@ class LiveDesign {
   /// The sliders, as the scene's session has them.
   nlohmann::json Sliders() const;
   /// The mechanism that is held from now on, as DesignGuide. Keeps a reference to the tree.
-  void Hold(const KinematicTree& held, std::vector<int> grasps);
+  void Hold(const KinematicTree& held, std::vector<int> hands);
   HeldDesign Start() const { return guide_->Start(); }
   const VectorXd& asked() const { return guide_->asked(); }
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <exception>
 #include <map>
-#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -146,9 +145,7 @@ MechanismSession::MechanismSession(Mechanism assembled, std::filesystem::path fi
     design_.reset();
     return;
   }
-  std::vector<int> grasps(screen_.mechanism().grasps.size());
-  std::iota(grasps.begin(), grasps.end(), 0);
-  design_->Hold(screen_.tree(), grasps);
+  design_->Hold(screen_.tree(), {});
   first_design_ = design_->Start();
   design_values_ = design_->asked();
 }

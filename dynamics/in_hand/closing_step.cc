@@ -54,6 +54,7 @@ bool ClosingStep::Close(const VectorXd& q, const VectorXd& v, const VectorXd& ne
 bool ClosingStep::Reclose(const VectorXd& q, SaddleSystem* system, GraspedMechanism* pose,
                           VectorXd* next_q) noexcept {
   *next_q = q;
+  if (tree_.loops.empty()) return true;
   for (int i = 0;; ++i) {
     squared_closure_ = SquaredNorm(pose->e2());
     if (i == kClosingSteps || squared_closure_ <= kClosed * kClosed ||

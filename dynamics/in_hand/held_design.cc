@@ -150,6 +150,31 @@ void Blend(const HeldDesign& from, const HeldDesign& to, double share,
   }
 }
 
+bool HasSameNumbers(const HeldDesign& a, const HeldDesign& b) {
+  const auto same = [](const Posed& X, const Posed& Y) { return X.R == Y.R && X.p == Y.p; };
+  for (size_t i = 0; i < a.tree.nodes.size(); ++i) {
+    const auto &m = a.tree.nodes[i], &n = b.tree.nodes[i];
+    if (!same(m.X_PF, n.X_PF) || !same(m.X_BL, n.X_BL) || m.pitch != n.pitch || m.mass != n.mass ||
+        m.p_BoBcm != n.p_BoBcm || m.I_Bcm != n.I_Bcm) {
+      return false;
+    }
+    const HeldDesign::FreedomNumbers &f = a.freedoms[i], &g = b.freedoms[i];
+    if (f.lower != g.lower || f.upper != g.upper || f.passive.stiffness != g.passive.stiffness ||
+        f.passive.rest != g.passive.rest || f.passive.viscous != g.passive.viscous ||
+        f.passive.coulomb != g.passive.coulomb) {
+      return false;
+    }
+  }
+  for (size_t j = 0; j < a.tree.placements.size(); ++j) {
+    const auto &p = a.tree.placements[j], &q = b.tree.placements[j];
+    if (!same(p.X_AF, q.X_AF) || !same(p.X_BM, q.X_BM) || p.pitch != q.pitch) return false;
+  }
+  for (size_t i = 0; i < a.grasps.size(); ++i) {
+    if (!same(a.grasps[i].X_BG, b.grasps[i].X_BG)) return false;
+  }
+  return a.gravity_W == b.gravity_W;
+}
+
 double WayBetween(const KinematicTree& tree, const HeldDesign& from, const HeldDesign& to) {
   double way = 0;
   const auto take = [&](const Posed& a, const Posed& b) {

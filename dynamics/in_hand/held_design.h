@@ -39,6 +39,8 @@ Mechanism MechanismWith(const HeldDesign& design, const KinematicTree& tree,
 void Blend(const HeldDesign& from, const HeldDesign& to, double share,
            HeldDesign* between) noexcept;
 
+bool HasSameNumbers(const HeldDesign& a, const HeldDesign& b);
+
 /// How far a frame of `to` is from the same of `from` at most [m]; a rotation counts as the way of
 /// a point at the characteristic length.
 double WayBetween(const KinematicTree& tree, const HeldDesign& from, const HeldDesign& to);

@@ -39,6 +39,9 @@ class TickAround : public Tick {
   void Show(TickPicture* picture) const noexcept override { tick_->Show(picture); }
   std::string FullReport() const override { return tick_->FullReport(); }
 
+ protected:
+  Tick* around() const noexcept { return tick_.get(); }
+
  private:
   std::unique_ptr<Tick> tick_;
 };

@@ -275,10 +275,6 @@ std::vector<int> ScreenMechanism::AllGrasps() const {
   return all;
 }
 
-HeldDesign ScreenMechanism::Design(const VectorXd& values) const {
-  return HeldDesignOf(*tree_, AllGrasps(), values);
-}
-
 void ScreenMechanism::VaryTo(const HeldDesign& start, const HeldDesign& design) {
   if (!design_) design_.emplace(start);
   design_->GoTo(design);

@@ -91,10 +91,9 @@ class ScreenMechanism {
   /// Stands still at a closed pose of the tree.
   void GoTo(const VectorXd& q);
 
-  /// The design that the mechanism begins with, for VaryTo; `values` of its parameters.
-  HeldDesign Design(const VectorXd& values) const;
   /// Changes the mechanism to another design of the same sizes as time passes, a little at each
-  /// step, wherever it is and whoever holds it; it need not move otherwise.
+  /// step, wherever it is and whoever holds it; it need not move otherwise. Designs are those of a
+  /// DesignGuide without hands; `start` is that which the mechanism had in the beginning.
   void VaryTo(const HeldDesign& start, const HeldDesign& design);
   /// Where it is on the way; null where nothing was varied.
   const DesignPath* design() const { return design_ ? &*design_ : nullptr; }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -24,7 +25,7 @@ LiveParameter Movable(const StatedParameter& stated) {
   constexpr double kLeast = 0.5, kMost = 2;  // of the value
   const double value = stated.figure;
   if (value == 0) return {stated.name, stated.unit, 0, -1, 1};
-  const auto [lower, upper] = std::minmax(kLeast * value, kMost * value);
+  const auto [lower, upper] = std::minmax({kLeast * value, kMost * value});
   return {stated.name, stated.unit, value, lower, upper};
 }
 
@@ -47,6 +48,28 @@ VariedMechanism::VariedMechanism(const std::filesystem::path& file,
     const PlacedExpression& holding = table.holding(table.Find(stated.name));
     if (holding.expression.names().empty()) parameters_.push_back(Movable(stated));
   }
+  std::vector<LiveParameter> moving;
+  for (size_t i = 0; i < parameters_.size(); ++i) {
+    if (Changes(static_cast<Eigen::Index>(i))) moving.push_back(parameters_[i]);
+  }
+  parameters_ = std::move(moving);
+}
+
+/// Does a parameter change more than where the mechanism starts?
+bool VariedMechanism::Changes(Eigen::Index parameter) {
+  constexpr double kSome = 1e-3;  // of the way to a bound
+  const auto design = [this](const VectorXd& values) {
+    const KinematicTree tree = BuildKinematicTree(Read(values));
+    std::vector<int> grasps(tree.mechanism.grasps.size());
+    std::iota(grasps.begin(), grasps.end(), 0);
+    return HeldDesignOf(tree, grasps);
+  };
+  const VectorXd begin = values();
+  VectorXd other = begin;
+  other[parameter] +=
+      kSome * (parameters_[static_cast<size_t>(parameter)].upper - begin[parameter]);
+  const HeldDesign changed = design(other);
+  return !HasSameNumbers(changed, design(begin));  // which the file is read with from here on
 }
 
 VectorXd VariedMechanism::values() const {
@@ -122,9 +145,12 @@ std::string VariedMechanism::TextWith(const VectorXd& values) const {
   return text;
 }
 
-DesignGuide::DesignGuide(VariedMechanism* source, const KinematicTree& held,
-                         std::vector<int> grasps)
-    : source_(source), held_(held), grasps_(std::move(grasps)), asked_(source->values()) {}
+DesignGuide::DesignGuide(VariedMechanism* source, const KinematicTree& held, std::vector<int> hands)
+    : source_(source), held_(held), grasps_(std::move(hands)), asked_(source->values()) {
+  for (int i = 0; i < static_cast<int>(held.mechanism.grasps.size()); ++i) {
+    if (std::find(grasps_.begin(), grasps_.end(), i) == grasps_.end()) grasps_.push_back(i);
+  }
+}
 
 HeldDesign DesignGuide::Start() const {
   return HeldDesignOf(held_, grasps_, source_->values());

@@ -25,7 +25,8 @@ class VariedMechanism {
   /// @throws FileErrors as ReadMechanism.
   VariedMechanism(const std::filesystem::path& file, std::span<const ParameterSetting> settings);
 
-  /// Those whose value is a number, not a formula of others.
+  /// Those whose value is a number, not a formula of others, and that change a number of the
+  /// mechanism beside its start.
   const std::vector<LiveParameter>& parameters() const { return parameters_; }
   /// Their values, as the file was read.
   VectorXd values() const;
@@ -45,6 +46,8 @@ class VariedMechanism {
   std::string TextWith(const VectorXd& values) const;
 
  private:
+  bool Changes(Eigen::Index parameter);
+
   std::string text_;
   MechanismSource source_;
   std::vector<LiveParameter> parameters_;
@@ -54,8 +57,9 @@ class VariedMechanism {
 /// way at a time, so that every stage is a mechanism of the file. Not for several threads at once.
 class DesignGuide {
  public:
-  /// Keeps references. `grasps`: of the mechanism, by index, one for each hand.
-  DesignGuide(VariedMechanism* source, const KinematicTree& held, std::vector<int> grasps);
+  /// Keeps references. `hands`: the grasps of the mechanism that hands hold, by index; designs have
+  /// them first, then the others.
+  DesignGuide(VariedMechanism* source, const KinematicTree& held, std::vector<int> hands);
 
   /// The design that the mechanism begins with.
   HeldDesign Start() const;

@@ -7,10 +7,10 @@
 namespace vmech {
 
 VariedTick::VariedTick(std::unique_ptr<CoupledTick> tick, const HeldDesign& start)
-    : VariedTick(tick.get(), std::move(tick), start) {}
-
-VariedTick::VariedTick(CoupledTick* coupled, std::unique_ptr<Tick> same, const HeldDesign& start)
-    : TickAround(std::move(same)), tick_(coupled), path_(start), designs_({0, start}) {}
+    : TickAround(std::move(tick)),
+      tick_(static_cast<CoupledTick*>(around())),
+      path_(start),
+      designs_({0, start}) {}
 
 void VariedTick::StepHands(std::span<const TickInput> inputs, std::span<TickOutput> outputs,
                            std::span<double> channels) noexcept {

@@ -40,8 +40,6 @@ class VariedTick : public TickAround {
   TripleBuffer<Sent>& designs() noexcept { return designs_; }
 
  private:
-  VariedTick(CoupledTick* coupled, std::unique_ptr<Tick> same, const HeldDesign& start);
-
   CoupledTick* tick_;
   DesignPath path_;
   TripleBuffer<Sent> designs_;

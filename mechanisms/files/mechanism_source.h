@@ -75,6 +75,7 @@ class MechanismSource {
   ParameterTable table_;
   std::vector<std::filesystem::path> users_;                      ///< the file itself last
   std::map<std::string, std::unique_ptr<MechanismSource>> used_;  ///< by the name of the use
+  size_t errors_of_text_ = 0;                                     ///< whatever its parameters are
   std::vector<Node> link_nodes_;  ///< for each link of the mechanism the node that brought it
 };
 

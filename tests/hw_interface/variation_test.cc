@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "hw_interface/tick_input.h"
 #include "support/examples.h"
 #include "vmech/hw_interface/rendering/coupled_tick.h"
 #include "vmech/hw_interface/screen/screen_mechanism.h"
@@ -37,9 +38,9 @@ double Distance(const Mechanism& mechanism, const char* link, const char* from, 
 }
 
 /// A mechanism in a hand that pulls to and fro at a firm coupling, while its design is varied.
-class VariedSession {
+class SessionOfDesigns {
  public:
-  VariedSession(const std::string& example, const HandCoupling& coupling)
+  SessionOfDesigns(const std::string& example, const HandCoupling& coupling)
       : source(FileOf(example), {}),
         tree(BuildKinematicTree(AssembleMechanism(source.Read(source.values())).mechanism)),
         guide(&source, tree, {0}) {
@@ -69,11 +70,12 @@ class VariedSession {
       }
     }
     const double time = kPeriod * static_cast<double>(++ticks);
-    TickInput input;
-    const Vector3d way = reach * std::sin(2 * M_PI * time) * Vector3d(1, 0.6, 0.3);
-    input.X_WH = {X_WG.R, X_WG.p + way};
-    input.fresh = true;
-    input.elapsed = kPeriod;
+    // A handle in a hand that gives way: what the mechanism puts on it moves it.
+    constexpr double kMass = 0.5, kStiffness = 300, kDamping = 25;  // [kg], [N/m], [N s/m]
+    const Vector3d wanted = reach * std::sin(2 * M_PI * time) * Vector3d(1, 0.6, 0.3);
+    v += kPeriod / kMass * (F.head<3>() + kStiffness * (wanted - way) - kDamping * v);
+    way += kPeriod * v;
+    const TickInput input = FreshInput({X_WG.R, X_WG.p + way}, kPeriod);
     const TickOutput out = tick->Step(input, channels);
     if (ticks > 1) {
       largest_jump = std::max(largest_jump, (out.F_Ho_W - F).head<3>().norm());
@@ -93,8 +95,8 @@ class VariedSession {
     for (int i = 0; i < most_ticks; ++i) {
       Step();
       tick->Show(&picture);
-      if (picture.design == guide.asked() && picture.design_arrived) return true;
       if (!guide.refusal().empty()) return false;
+      if (picture.design == guide.asked() && picture.design_arrived) return true;
     }
     return false;
   }
@@ -115,7 +117,7 @@ class VariedSession {
   std::vector<double> channels;
   std::uint64_t number = 0;
   Vector6d F = Vector6d::Zero();
-  Vector3d last_way = Vector3d::Zero();
+  Vector3d way = Vector3d::Zero(), last_way = Vector3d::Zero(), v = Vector3d::Zero();
   double stored = 0;
 };
 
@@ -134,32 +136,27 @@ TEST_P(VariedExample, FollowsEveryParameterFromBoundToBoundWhileAHandMovesIt) {
   const size_t parameters = VariedMechanism(FileOf(GetParam()), {}).parameters().size();
   ASSERT_GT(parameters, 0u);
   for (size_t i = 0; i < parameters; ++i) {
-    VariedSession session(GetParam(), Firm());
+    SessionOfDesigns session(GetParam(), Firm());
     const LiveParameter& moved = session.source.parameters()[i];
     SCOPED_TRACE(moved.name);
-    double still = 0;
     for (int k = 0; k < 1000; ++k) session.Step();
-    still = session.largest_jump;
-    int refused = 0;
+    session.balance = session.least = 0;  // of the fall into the hand's spring, too fast for ticks
     for (const double value : {moved.upper, moved.lower, moved.value}) {
-      refused += !session.Vary(static_cast<int>(i), value, 20000);
+      if (session.Vary(static_cast<int>(i), value, 20000)) continue;
+      EXPECT_NE(session.guide.refusal(), "") << "neither there nor refused";
     }
     EXPECT_TRUE(session.fine);
-    EXPECT_LT(session.largest_jump, still + 1);
     EXPECT_LT(session.largest_jump, 1);
     EXPECT_LT(session.worst_closure, 1e-9);
     EXPECT_GT(session.least, -1e-3) << "the hand got more than it had given";
-    if (refused > 0) {
-      EXPECT_FALSE(session.guide.refusal().empty());
-    }
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Parameters, VariedExample,
-                         testing::Values("four-bar-by-lengths", "hexapod-leg", "hexapod"));
+                         testing::Values("four-bar-by-lengths", "hexapod"));
 
 TEST(VariedTick, BecomesTheMechanismOfTheFile) {
-  VariedSession session("four-bar-by-lengths", Firm());
+  SessionOfDesigns session("four-bar-by-lengths", Firm());
   ASSERT_EQ(session.source.parameters()[1].name, "crank");
   ASSERT_TRUE(session.Vary(1, 0.4, 20000)) << session.guide.refusal();
   ASSERT_TRUE(session.Vary(2, 1.3, 20000)) << session.guide.refusal();
@@ -179,7 +176,7 @@ TEST(VariedTick, BecomesTheMechanismOfTheFile) {
 
 /// The work of a change against gravity alone: a crank without a loop, of which the mass grows.
 TEST(VariedTick, WorkOfAChangeIsThatAgainstGravity) {
-  VariedSession session("four-bar-by-lengths", Firm());
+  SessionOfDesigns session("four-bar-by-lengths", Firm());
   session.reach = 0;
   for (int k = 0; k < 500; ++k) session.Step();
   const double before = session.held->dynamics().Energy();
@@ -191,23 +188,42 @@ TEST(VariedTick, WorkOfAChangeIsThatAgainstGravity) {
   EXPECT_NE(session.picture.design_work, 0);
 }
 
-TEST(VariedTick, SaysWhereTheLoopsDoNotCloseAnyFurther) {
-  VariedSession session("four-bar-by-lengths", Firm());
+TEST(VariedTick, IsRefusedWhatCannotBeAssembled) {
+  SessionOfDesigns session("four-bar-by-lengths", Firm());
+  EXPECT_FALSE(session.Vary(2, 2.4, 100)) << "crank, rocker and ground are 2.35 m together";
+  EXPECT_NE(session.guide.refusal().find("coupler = 2.4 m"), std::string::npos);
+  EXPECT_EQ(session.picture.design, session.source.values());
+  // It goes elsewhere all the same.
+  EXPECT_TRUE(session.Vary(2, 1.25, 20000)) << session.guide.refusal();
+}
+
+TEST(VariedTick, StopsWhereTheLoopsDoNotCloseAnyFurther) {
+  SessionOfDesigns session("four-bar-by-lengths", Firm());
   session.reach = 0;
-  // At this pose the crank's pin is sqrt(1.1^2 + 0.5^2 - 1.1 cos 30) = 0.7122 from the rocker's
-  // pivot: with a coupler of 0.6 and a rocker of 0.75 it could go, at 1.8 it is out of reach.
-  EXPECT_FALSE(session.Vary(2, 2.3, 20000));
-  EXPECT_NE(session.guide.refusal(), "");
+  Mechanism stretched = session.tree.mechanism;
+  Link& coupler = stretched.links[static_cast<size_t>(FindLink(stretched, "coupler"))];
+  coupler.anchors[1].X_LA.p.x() = 2.5;  // stretched to a line, the others leave 2.35 m
+  const std::vector<int> cuts = session.tree.spanning.cuts, grasps{0, 1};
+  VectorXd values = session.source.values();
+  values[2] = 2.5;
+  HeldDesign out_of_reach =
+      HeldDesignOf(BuildKinematicTree(stretched, {{}, cuts, {}}), grasps, values);
+  session.tick->designs().back() = {1, out_of_reach};
+  session.tick->designs().Publish();
+  for (int k = 0; k < 20000 && !session.picture.design_stopped; ++k) {
+    session.Step();
+    session.tick->Show(&session.picture);
+  }
+  EXPECT_TRUE(session.picture.design_stopped);
+  EXPECT_GT(session.picture.design[2], 1.3);
+  EXPECT_LT(session.picture.design[2], 2.35);
   EXPECT_TRUE(session.fine);
-  for (int k = 0; k < 200; ++k) session.Step();
   EXPECT_LT(session.largest_jump, 1);
-  EXPECT_LT(session.picture.design[2], 2.0);
-  // It goes back all the same.
-  EXPECT_TRUE(session.Vary(2, 1.2, 20000)) << session.guide.refusal();
+  EXPECT_LT(session.worst_closure, 1e-9);
 }
 
 TEST(DesignGuide, RefusesWhatIsNotThere) {
-  VariedSession session("four-bar-by-lengths", Firm());
+  SessionOfDesigns session("four-bar-by-lengths", Firm());
   EXPECT_THROW(session.guide.Ask(17, 1), std::invalid_argument);
   EXPECT_THROW(session.guide.Ask(-1, 1), std::invalid_argument);
   EXPECT_THROW(session.guide.Ask(1, 1e9), std::invalid_argument);
@@ -226,11 +242,43 @@ TEST(VariedMechanism, WritesItsValuesIntoTheFile) {
   EXPECT_NE(text.find("ground - crank*cos(turn)"), std::string::npos) << "formulas stay";
 }
 
+class VariedOnScreen : public testing::TestWithParam<const char*> {};
+
+TEST_P(VariedOnScreen, FollowsEveryParameterInTheMousesHand) {
+  VariedMechanism source(FileOf(GetParam()), {});
+  for (size_t i = 0; i < source.parameters().size(); ++i) {
+    const LiveParameter& moved = source.parameters()[i];
+    SCOPED_TRACE(moved.name);
+    ScreenMechanism screen(AssembleMechanism(source.Read(source.values())).mechanism);
+    DesignGuide guide(&source, screen.tree(), {});
+    const HeldDesign start = guide.Start();
+    screen.Grab(1, Vector3d::Zero());
+    const double wanted = 0.9 * moved.value + 0.1 * moved.upper;
+    guide.Ask(static_cast<int>(i), wanted);
+    VectorXd values = source.values();
+    for (int k = 0; k < 2000 && guide.refusal().empty() && values != guide.asked(); ++k) {
+      const DesignPath* path = screen.design();
+      const VectorXd q = screen.q();
+      const auto next = guide.Next(
+          {q, values, path == nullptr || path->arrived(), path != nullptr && path->stopped()});
+      if (next) screen.VaryTo(start, *next);
+      screen.Advance(4);
+      if (screen.design() != nullptr) values = screen.design()->now().values;
+    }
+    EXPECT_EQ(guide.refusal(), "");
+    EXPECT_EQ(values[static_cast<Eigen::Index>(i)], wanted);
+    EXPECT_LT(screen.State().closure, 1e-9);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Parameters, VariedOnScreen,
+                         testing::Values("four-bar-by-lengths", "hexapod-leg", "hexapod"));
+
 TEST(ScreenMechanism, StandsStillWhileItsDesignIsVaried) {
   VariedMechanism source(FileOf("four-bar-by-lengths"), {});
   ScreenMechanism screen(AssembleMechanism(source.Read(source.values())).mechanism);
-  DesignGuide guide(&source, screen.tree(), {0, 1});
-  const HeldDesign start = screen.Design(source.values());
+  DesignGuide guide(&source, screen.tree(), {});
+  const HeldDesign start = guide.Start();
   guide.Ask(1, 0.4);
   const VectorXd begin = screen.q();
   for (int i = 0; i < 2000; ++i) {
