@@ -241,8 +241,10 @@ int Hold(const HeldMechanism& held, const HapticArguments& arguments, const Mast
     shown = tick.get();
     rendering.tick = std::move(tick);
   }
-  Runner runner(OptionsOf(arguments, held, rendering), HandsOf(rendering, masters),
-                rendering.tick.get(), clock);
+  const VariedTick* const varied = variation.tick;
+  RunnerOptions options = OptionsOf(arguments, held, rendering);
+  if (varied != nullptr) options.mechanism = {};  // the last ticks may be another mechanism's
+  Runner runner(options, HandsOf(rendering, masters), rendering.tick.get(), clock);
   SessionRecording recording({arguments.record, arguments.force, arguments.free_running}, held.tree,
                              held.subject.grasps.front(), &runner);
   if (!arguments.quiet) {
@@ -262,6 +264,7 @@ int Hold(const HeldMechanism& held, const HapticArguments& arguments, const Mast
     summary = runner.Run();
   }
   recording.Finish();
+  if (varied != nullptr && varied->varied()) recording.ForgetFelt();
   if (!arguments.quiet) {
     fmt::print("{}{}{}", summary.FullReport(), rendering.tick->FullReport(), recording.Report());
   }

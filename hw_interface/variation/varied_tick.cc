@@ -35,9 +35,12 @@ void VariedTick::Show(TickPicture* picture) const noexcept {
 
 std::string VariedTick::FullReport() const {
   std::string report = tick_->FullReport();
-  if (number_ == 0) return report;
-  return report + fmt::format("  its design was changed, which has raised its energy by {:.3g} J\n",
-                              tick_->dynamics().design_work());
+  if (!varied()) return report;
+  return report +
+         fmt::format(
+             "  its design was changed, which has raised its energy by {:.3g} J; what was felt is "
+             "of no one mechanism\n",
+             tick_->dynamics().design_work());
 }
 
 }  // namespace vmech

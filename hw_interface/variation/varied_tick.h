@@ -35,6 +35,8 @@ class VariedTick : public TickAround {
   /// And the design.
   void Show(TickPicture* picture) const noexcept override;
   std::string FullReport() const override;
+  /// Has a design been sent to it?
+  bool varied() const noexcept { return number_ > 0; }
 
   /// For the other thread, which writes.
   TripleBuffer<Sent>& designs() noexcept { return designs_; }
