@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vmech/dynamics/in_hand/passive_joints.h"
-
 namespace vmech {
 namespace {
 

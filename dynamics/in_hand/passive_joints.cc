@@ -118,10 +118,6 @@ bool PassiveJoints::ChangeLimits(const VectorXd& q, const VectorXd& next_v, doub
   return changed;
 }
 
-bool HasPassive(const Passive& passive) {
-  return passive.stiffness != 0 || passive.viscous != 0 || passive.coulomb != 0;
-}
-
 SpanningTreeOptions KeepPassiveJoints(const Mechanism& mechanism) {
   SpanningTreeOptions options;
   for (size_t j = 0; j < mechanism.joints.size(); ++j) {

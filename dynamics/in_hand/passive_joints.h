@@ -52,9 +52,6 @@ class PassiveJoints {
   bool at_limit_ = false;
 };
 
-/// Does this freedom have a spring or friction?
-bool HasPassive(const Passive& passive);
-
 /// Dry friction builds up in proportion to the speed until here [m/s] or [rad/s].
 inline constexpr double kSlowSliding = 1e-2;
 

@@ -216,10 +216,11 @@ class Design(CommandTest):
 
     def vary(self, name, value):
         names = [p["name"] for p in self.do("return vmechView.scene.session.parameters")]
-        self.do("vmechView.session.send({do: 'vary', parameter: arguments[0], value: arguments[1]})",
-                names.index(name), value)
+        asked = names.index(name), value
+        self.do("vmechView.session.send({do: 'vary', parameter: arguments[0], "
+                "value: arguments[1]})", *asked)
         self.wait("const d = vmechView.session.last.design; return d.stopped || "
-                  "Math.abs(d.values[arguments[0]] - arguments[1]) < 1e-12", names.index(name), value)
+                  "Math.abs(d.values[arguments[0]] - arguments[1]) < 1e-12", *asked)
         return self.state()["design"]
 
     def crank_length(self):
