@@ -124,6 +124,7 @@ struct HapticArguments {
   std::vector<double> home;            ///< of the handle [m]; empty: where it is
   std::vector<std::string> handle;     ///< "mass=0.3", ..: what is known of it better
   bool view = false;                   ///< shown on a page
+  bool varied = true;                  ///< on which its parameters can be moved
   std::filesystem::path record;        ///< CSV or MCAP; empty: no recording
   bool force = false;                  ///< write over an old recording
   bool free_running = false;           ///< as fast as it computes

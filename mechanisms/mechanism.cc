@@ -20,6 +20,10 @@ int FindByName(const std::vector<Item>& items, std::string_view name) {
 
 }  // namespace
 
+bool HasPassive(const Passive& passive) {
+  return passive.stiffness != 0 || passive.viscous != 0 || passive.coulomb != 0;
+}
+
 int FindLink(const Mechanism& mechanism, std::string_view name) {
   return FindByName(mechanism.links, name);
 }

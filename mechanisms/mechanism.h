@@ -51,6 +51,8 @@ struct PassiveOf {
   T coulomb = 0;    ///< constant part of dry friction [N] or [N m]
 };
 using Passive = PassiveOf<double>;
+/// Is there a spring or friction?
+bool HasPassive(const Passive& passive);
 
 /// Dry friction in proportion to the joint's load (dynamics/contact_friction.h has the formulas).
 /// The load is that of the joint itself, so that the reactions and the friction are found together.

@@ -17,6 +17,7 @@
 #include "vmech/apps/console/option_error.h"
 #include "vmech/apps/files/file_kind.h"
 #include "vmech/apps/files/inputs_apart.h"
+#include "vmech/apps/files/parameter_options.h"
 #include "vmech/apps/haptic/handle_home.h"
 #include "vmech/apps/haptic/haptic_session.h"
 #include "vmech/apps/haptic/haptic_view.h"
@@ -31,11 +32,14 @@
 #include "vmech/hw_interface/loop/runner.h"
 #include "vmech/hw_interface/recording/recording_file.h"
 #include "vmech/hw_interface/recording/recording_reader.h"
+#include "vmech/hw_interface/rendering/coupled_tick.h"
 #include "vmech/hw_interface/safety/stability.h"
+#include "vmech/hw_interface/variation/varied_tick.h"
 #include "vmech/kinematics/loops/assembled_mechanism.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
 #include "vmech/mechanisms/files/document.h"
 #include "vmech/mechanisms/plausibility.h"
+#include "vmech/studies/study_reader.h"
 
 namespace vmech {
 namespace {
@@ -194,6 +198,28 @@ std::vector<RunnerHand> HandsOf(const Rendering& rendering, const Masters& maste
   return hands;
 }
 
+/// Lets a page vary the design of what is held, if its file has parameters: in the virtual
+/// coupling, and where nothing is recorded, since a recording is of one mechanism.
+LiveVariation VaryTick(const HeldMechanism& held, const HapticArguments& arguments,
+                       Rendering* rendering) {
+  if (!arguments.varied || dynamic_cast<CoupledTick*>(rendering->tick.get()) == nullptr) return {};
+  auto design =
+      KindOfFile(arguments.file) == FileKind::kStudy
+          ? std::make_unique<LiveDesign>(ReadStudy(arguments.file, ParseSettings(arguments.set)))
+          : std::make_unique<LiveDesign>(arguments.file, ParseSettings(arguments.set));
+  if (!design->any()) return {};
+  if (!arguments.record.empty()) {
+    fmt::print("note: parameters cannot be moved while it is recorded\n");
+    return {};
+  }
+  design->Hold(held.tree, held.subject.grasps);
+  std::unique_ptr<CoupledTick> coupled(static_cast<CoupledTick*>(rendering->tick.release()));
+  auto varied = std::make_unique<VariedTick>(std::move(coupled), design->Start());
+  LiveVariation variation{varied.get(), std::move(design)};
+  rendering->tick = std::move(varied);
+  return variation;
+}
+
 /// Runs the loop of configured masters, one for each hand, and reports.
 int Hold(const HeldMechanism& held, const HapticArguments& arguments, const Masters& masters,
          LoopClock* clock) {
@@ -205,15 +231,20 @@ int Hold(const HeldMechanism& held, const HapticArguments& arguments, const Mast
       MakeRendering({arguments.coupling, arguments.scale, arguments.stiffness, arguments.inertia,
                      arguments.contact, arguments.estimator, arguments.wrench},
                     held.tree, std::move(hands), held.q);
+  LiveVariation variation;
+  if (arguments.view) variation = VaryTick(held, arguments, &rendering);
+  const VectorXd values = variation.design ? variation.design->asked() : VectorXd();
   ShownTick* shown = nullptr;
   if (arguments.view) {
     auto tick = std::make_unique<ShownTick>(std::move(rendering.tick),
-                                            PictureOf(held.tree, held.q, masters.size()));
+                                            PictureOf(held.tree, held.q, masters.size(), values));
     shown = tick.get();
     rendering.tick = std::move(tick);
   }
-  Runner runner(OptionsOf(arguments, held, rendering), HandsOf(rendering, masters),
-                rendering.tick.get(), clock);
+  const VariedTick* const varied = variation.tick;
+  RunnerOptions options = OptionsOf(arguments, held, rendering);
+  if (varied != nullptr) options.mechanism = {};  // the last ticks may be another mechanism's
+  Runner runner(options, HandsOf(rendering, masters), rendering.tick.get(), clock);
   SessionRecording recording({arguments.record, arguments.force, arguments.free_running}, held.tree,
                              held.subject.grasps.front(), &runner);
   if (!arguments.quiet) {
@@ -223,7 +254,7 @@ int Hold(const HeldMechanism& held, const HapticArguments& arguments, const Mast
   RunSummary summary;
   std::optional<HapticView> view;
   if (shown != nullptr) {
-    view.emplace(held.tree, shown, runner);
+    view.emplace(held.tree, shown, runner, std::move(variation));
     fmt::print("The session is shown at\n  {}\n", view->url());
     std::fflush(stdout);
   }
@@ -233,6 +264,7 @@ int Hold(const HeldMechanism& held, const HapticArguments& arguments, const Mast
     summary = runner.Run();
   }
   recording.Finish();
+  if (varied != nullptr && varied->varied()) recording.ForgetFelt();
   if (!arguments.quiet) {
     fmt::print("{}{}{}", summary.FullReport(), rendering.tick->FullReport(), recording.Report());
   }
@@ -293,6 +325,7 @@ HapticArguments ArgumentsOf(const Recording& recording, const ReplayArguments& r
   arguments.seconds = recording.period * static_cast<double>(recording.ticks.size());
   arguments.free_running = !replay.view;
   arguments.view = replay.view;
+  arguments.varied = false;
   arguments.post_mortem = false;
   arguments.quiet = replay.quiet;
   return arguments;

@@ -220,8 +220,7 @@ Rendering MakeRendering(const RenderingRequest& request, const KinematicTree& tr
   return (paper ? MakePaper : MakeCoupled)(request, tree, std::move(hands), q);
 }
 
-HapticSubject ReadSubject(const std::filesystem::path& file,
-                          const std::vector<std::string>& grasps,
+HapticSubject ReadSubject(const std::filesystem::path& file, const std::vector<std::string>& grasps,
                           const std::vector<std::string>& set) {
   HapticSubject subject = ReadWithSettings(set, [&](auto settings) {
     if (KindOfFile(file) == FileKind::kStudy) return ReadHeldStudy(file, settings);

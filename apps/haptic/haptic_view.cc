@@ -2,7 +2,9 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -31,19 +33,45 @@ Json Figure(const char* name, double value, const char* unit) {
 /// The loop, for a page that watches.
 class Subject : public PageSubject {
  public:
-  Subject(const KinematicTree& tree, ShownTick* tick, const Runner& runner)
-      : tree_(tree), period_(runner.period()), tick_(tick), runner_(runner) {}
+  Subject(const KinematicTree& tree, ShownTick* tick, const Runner& runner, LiveVariation variation)
+      : tree_(tree),
+        period_(runner.period()),
+        tick_(tick),
+        runner_(runner),
+        variation_(std::move(variation)) {
+    if (design() != nullptr) values_ = design()->asked();
+  }
 
-  std::string Page() override { return MechanismPage(tree_, {}, VMECH_VERSION, "haptic"); }
+  std::string Page() override {
+    const std::scoped_lock lock(mutex_);
+    const std::string sliders = design() != nullptr ? JsonText(design()->Sliders()) : "";
+    return MechanismPage(tree_, {}, VMECH_VERSION, "haptic", sliders);
+  }
 
-  std::string Do(const Json& /*request*/) override {
+  std::string Do(const Json& request) override {
+    const std::scoped_lock lock(mutex_);
+    const std::string what = request["do"];
+    if (design() != nullptr && what == "vary") {
+      design()->Ask(request);
+      return "";
+    }
+    if (design() != nullptr && what == "save" && request.value("what", Json()) == "parameters") {
+      return design()->Saved(values_);
+    }
     throw std::invalid_argument("the device has the mechanism in hand; this page watches");
   }
 
   std::string NewState() override {
     const std::scoped_lock lock(mutex_);
     if (!tick_->pictures().Take()) return "";
-    state_ = JsonText(Json{{"state", StateOf(tick_->pictures().front())}});
+    const TickPicture& picture = tick_->pictures().front();
+    LeadDesign(picture);
+    Json message{{"state", StateOf(picture)}};
+    if (design() != nullptr) {
+      message["state"]["design"] = design()->StateOf(values_, picture.design_work);
+    }
+    state_ = JsonText(message);
+    if (design() != nullptr) state_ = design()->Told(state_);
     return state_;
   }
 
@@ -53,6 +81,25 @@ class Subject : public PageSubject {
   }
 
  private:
+  LiveDesign* design() { return variation_.design.get(); }
+
+  /// Sends the tick the next design, and takes the shape of the one that it has.
+  void LeadDesign(const TickPicture& picture) {
+    if (design() == nullptr) return;
+    const bool heard = picture.design_number == sent_;
+    const std::optional<HeldDesign> next =
+        design()->Next({picture.q, picture.design, heard && picture.design_arrived,
+                        heard && picture.design_stopped});
+    if (next) {
+      variation_.tick->designs().back() = {++sent_, *next};
+      variation_.tick->designs().Publish();
+    }
+    if (picture.design == values_) return;
+    values_ = picture.design;
+    tree_ = design()->ReadAt(values_, tree_, picture.q);
+    design()->Reshape(tree_);
+  }
+
   Json StateOf(const TickPicture& picture) const {
     const LiveStatus& live = runner_.live();
     Mechanism now = tree_.mechanism;
@@ -79,10 +126,13 @@ class Subject : public PageSubject {
                 Figure("slots skipped", static_cast<double>(live.skipped), "")}}}}};
   }
 
-  const KinematicTree& tree_;
+  KinematicTree tree_;  // as it is now
   const double period_;
   ShownTick* tick_;
   const Runner& runner_;
+  LiveVariation variation_;
+  VectorXd values_;         // of the design that pages have
+  std::uint64_t sent_ = 0;  // designs
   std::mutex mutex_;
   std::string state_;
 };
@@ -90,8 +140,8 @@ class Subject : public PageSubject {
 }  // namespace
 
 struct HapticView::Parts {
-  Parts(const KinematicTree& tree, ShownTick* tick, const Runner& runner)
-      : subject(tree, tick, runner), session(&subject, 0), publisher([this] {
+  Parts(const KinematicTree& tree, ShownTick* tick, const Runner& runner, LiveVariation variation)
+      : subject(tree, tick, runner, std::move(variation)), session(&subject, 0), publisher([this] {
           while (!over) {
             session.Publish();
             std::this_thread::sleep_for(std::chrono::milliseconds(8));
@@ -108,8 +158,9 @@ struct HapticView::Parts {
   std::thread publisher;
 };
 
-HapticView::HapticView(const KinematicTree& tree, ShownTick* tick, const Runner& runner)
-    : parts_(std::make_unique<Parts>(tree, tick, runner)) {}
+HapticView::HapticView(const KinematicTree& tree, ShownTick* tick, const Runner& runner,
+                       LiveVariation variation)
+    : parts_(std::make_unique<Parts>(tree, tick, runner, std::move(variation))) {}
 
 HapticView::~HapticView() = default;
 
@@ -117,11 +168,13 @@ std::string HapticView::url() const {
   return parts_->session.url();
 }
 
-TickPicture PictureOf(const KinematicTree& tree, const VectorXd& q, std::size_t hands) {
+TickPicture PictureOf(const KinematicTree& tree, const VectorXd& q, std::size_t hands,
+                      const VectorXd& values) {
   TickPicture picture;
   picture.q = q;
   picture.joints.resize(tree.mechanism.joints.size());
   picture.others.resize(hands - 1);
+  picture.design = values;
   return picture;
 }
 

@@ -28,6 +28,8 @@ class SessionRecording {
 
   /// After the run; then the others.
   void Finish() { recorder_->Finish(); }
+  /// The mechanism was not the same all the time: what was felt is told of no one.
+  void ForgetFelt() { tells_felt_ = false; }
   /// What was felt, withheld and recorded, in lines.
   std::string Report() const;
   /// @throws FileErrors if the recording could not be written to its end.

@@ -22,7 +22,8 @@ KinematicTree TreeOf(const LoadStudy& study, const LoadStudyResult& loads) {
 }  // namespace
 
 std::string MotionScene(const StudyFile& file, const LoadStudyResult& loads,
-                        std::string_view version, std::string_view session) {
+                        std::string_view version, std::string_view session,
+                        std::string_view parameters) {
   const KinematicTree tree = TreeOf(file.study, loads);
   const Cycle cycle = CycleOf(file.study, loads);
   Scene scene;
@@ -38,6 +39,7 @@ std::string MotionScene(const StudyFile& file, const LoadStudyResult& loads,
     scene.axis.dead_centres.push_back({centre.x, centre.label});
   }
   scene.session = session;
+  scene.parameters = parameters;
   return SceneJson(scene);
 }
 

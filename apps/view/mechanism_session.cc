@@ -135,14 +135,39 @@ std::string MechanismText(const Mechanism& mechanism, const std::string& comment
 }  // namespace
 
 MechanismSession::MechanismSession(Mechanism assembled, std::filesystem::path file,
-                                   std::function<std::string(const KinematicTree&)> page)
-    : file_(std::move(file)), page_(std::move(page)), screen_(std::move(assembled)) {}
+                                   std::function<std::string(const KinematicTree&)> page,
+                                   std::unique_ptr<LiveDesign> design)
+    : file_(std::move(file)),
+      page_(std::move(page)),
+      screen_(std::move(assembled)),
+      design_(std::move(design)) {
+  if (!design_ || !design_->any()) {
+    design_.reset();
+    return;
+  }
+  design_->Hold(screen_.tree(), {});
+  first_design_ = design_->Start();
+  design_values_ = design_->asked();
+}
+
+/// Sends the mechanism on its way to the design that is asked for.
+void MechanismSession::LeadDesign() {
+  if (!design_) return;
+  const DesignPath* path = screen_.design();
+  const bool under_way = path != nullptr && !path->arrived();
+  const VectorXd q = screen_.q();
+  const std::optional<HeldDesign> next =
+      design_->Next({q, design_values_, !under_way, path != nullptr && path->stopped()});
+  if (next) screen_.VaryTo(*first_design_, *next);
+  changed_ = changed_ || design_->HasNews();
+}
 
 void MechanismSession::Run(double elapsed) {
   const std::scoped_lock lock(mutex_);
   pending_ = std::min(pending_ + elapsed, kLongestPause);
   const int steps = static_cast<int>(pending_ / ScreenMechanism::kStep);
   pending_ -= steps * ScreenMechanism::kStep;
+  LeadDesign();
   if (!screen_.moves() || steps == 0) return;
   changed_ = true;
   try {
@@ -150,6 +175,11 @@ void MechanismSession::Run(double elapsed) {
   } catch (const std::exception& error) {
     note_ = error.what();
   }
+  const DesignPath* path = screen_.design();
+  if (path == nullptr || path->now().values == design_values_) return;
+  design_values_ = path->now().values;
+  modes_.clear();  // were those of another mechanism
+  design_->Reshape(screen_.tree());
 }
 
 std::string MechanismSession::Page() {
@@ -163,6 +193,14 @@ std::string MechanismSession::Do(const Json& request) {
   const std::scoped_lock lock(mutex_);
   changed_ = true;
   if (what == "save") return Save(TextOf(request, "what"));
+  Act(request);
+  if (request.contains("sent") && request["sent"].is_number())
+    echo_ = request["sent"].get<double>();
+  return "";
+}
+
+void MechanismSession::Act(const Json& request) {
+  const std::string what = request["do"];
   const std::map<std::string, std::function<void()>> acts{
       {"grab", [&] { screen_.Grab(IntegerOf(request, "link"), PointOf(request, "point")); }},
       {"drag", [&] { screen_.Drag(PointOf(request, "to")); }},
@@ -171,6 +209,11 @@ std::string MechanismSession::Do(const Json& request) {
        [&] {
          screen_.Slide(IntegerOf(request, "joint"), IntegerOf(request, "freedom"),
                        NumberOf(request, "value"));
+       }},
+      {"vary",
+       [&] {
+         if (!design_) throw std::invalid_argument("the file has no parameters to vary");
+         design_->Ask(request);
        }},
       {"swing", [&] { screen_.Swing(); }},
       {"freeze", [&] { screen_.Freeze(); }},
@@ -186,9 +229,6 @@ std::string MechanismSession::Do(const Json& request) {
   const auto act = acts.find(what);
   if (act == acts.end()) throw std::invalid_argument("'" + what + "' is nothing that can be done");
   act->second();
-  if (request.contains("sent") && request["sent"].is_number())
-    echo_ = request["sent"].get<double>();
-  return "";
 }
 
 void MechanismSession::LetGo() {
@@ -221,6 +261,10 @@ std::string MechanismSession::Save(const std::string& what) const {
   const auto add = [&](const std::string& name, const std::string& text) {
     files.push_back({{"name", name}, {"text", text}});
   };
+  if (what == "parameters") {
+    if (!design_) throw std::invalid_argument("the file has no parameters to save");
+    return design_->Saved(design_values_);
+  }
   if (what == "mechanism") {
     add(stem + "-posed.yaml", MechanismText(screen_.MechanismAt(screen_.q()),
                                             fmt::format("{}, its start as it was on the screen.",
@@ -242,7 +286,8 @@ std::string MechanismSession::Save(const std::string& what) const {
                     YamlWord(name + ".yaml"), mechanism.units.length, mechanism.units.angle, grasp,
                     YamlWord(name + ".csv")));
   } else {
-    throw std::invalid_argument("'" + what + "' cannot be saved; 'mechanism' and 'motion' can");
+    throw std::invalid_argument("'" + what +
+                                "' cannot be saved; 'mechanism', 'motion' and 'parameters' can");
   }
   return JsonText(Json{{"save", what}, {"files", files}});
 }
@@ -262,7 +307,9 @@ std::string MechanismSession::State() {
   if (echo_) message["state"]["echo"] = *std::exchange(echo_, std::nullopt);
   if (!note_.empty()) message["note"] = std::exchange(note_, {});
   changed_ = false;
-  return JsonText(message);
+  if (!design_) return JsonText(message);
+  message["state"]["design"] = design_->StateOf(design_values_, screen_.design_work());
+  return design_->Told(JsonText(message));
 }
 
 }  // namespace vmech

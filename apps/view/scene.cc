@@ -256,6 +256,7 @@ std::string SceneJson(const Scene& scene) {
   if (scene.loads != nullptr) json["motion"] = MotionOf(scene);
   if (!scene.session.empty()) {
     json["session"] = {{"socket", "/socket"}, {"kind", scene.session}};
+    if (!scene.parameters.empty()) json["session"]["parameters"] = Json::parse(scene.parameters);
   }
   return WithoutMarkup(JsonText(json));
 }

@@ -32,6 +32,7 @@ struct Scene {
   SceneAxis axis;
   /// Of a session: "mechanism" or "haptic"; empty: none.
   std::string session;
+  std::string parameters;  ///< of a session whose design is varied: LiveDesign::Sliders, as text
 };
 
 /// The scene in JSON, as README.md describes it: SI units, radians, world axes. It can lie in an

@@ -17,6 +17,7 @@
 #include "vmech/apps/files/parameter_options.h"
 #include "vmech/apps/loads/named_study.h"
 #include "vmech/apps/report/motion_scene.h"
+#include "vmech/apps/view/json_text.h"
 #include "vmech/apps/view/mechanism_session.h"
 #include "vmech/apps/view/meshes.h"
 #include "vmech/apps/view/view_page.h"
@@ -95,8 +96,9 @@ Mechanism Assembled(const fs::path& file, Mechanism mechanism, const ViewArgumen
 }
 
 void ServeMechanism(Mechanism assembled, const fs::path& file, const ViewArguments& arguments,
-                    const std::function<std::string(const KinematicTree&)>& page) {
-  MechanismSession session(std::move(assembled), file, page);
+                    const std::function<std::string(const KinematicTree&)>& page,
+                    std::unique_ptr<LiveDesign> design) {
+  MechanismSession session(std::move(assembled), file, page, std::move(design));
   for (const std::string& note : session.notes()) fmt::print("note: {}\n", note);
   Serve(&session, arguments, [&](double elapsed) { session.Run(elapsed); });
 }
@@ -108,9 +110,12 @@ void ViewMechanism(const ViewArguments& arguments) {
   const fs::path folder =
       arguments.meshes.empty() ? MeshFolderOf(arguments.file) : arguments.meshes;
   const std::vector<std::string> meshes = ReadMeshes(mechanism, folder);
-  ServeMechanism(mechanism, arguments.file, arguments, [&](const KinematicTree& tree) {
-    return MechanismPage(tree, meshes, VMECH_VERSION, "mechanism");
-  });
+  auto design = std::make_unique<LiveDesign>(arguments.file, ParseSettings(arguments.set));
+  const std::string sliders = JsonText(design->Sliders());
+  const auto page = [&](const KinematicTree& tree) {
+    return MechanismPage(tree, meshes, VMECH_VERSION, "mechanism", sliders);
+  };
+  ServeMechanism(mechanism, arguments.file, arguments, page, std::move(design));
 }
 
 void ViewStudy(const ViewArguments& arguments) {
@@ -118,10 +123,13 @@ void ViewStudy(const ViewArguments& arguments) {
       arguments.set, [&](auto settings) { return ReadStudy(arguments.file, settings); });
   if (arguments.tolerance) file.study.mechanism.tolerance = *arguments.tolerance;
   const StudyOutcome outcome = RunNamedStudy(file, {});
+  auto design = std::make_unique<LiveDesign>(file);
+  const std::string sliders = JsonText(design->Sliders());
   const std::string page =
-      ViewPage(file.name, MotionScene(file, outcome.loads, VMECH_VERSION, "mechanism"));
+      ViewPage(file.name, MotionScene(file, outcome.loads, VMECH_VERSION, "mechanism", sliders));
+  const auto same = [&](const KinematicTree&) { return page; };
   ServeMechanism(Assembled(file.mechanism_path, file.study.mechanism, arguments),
-                 file.mechanism_path, arguments, [&](const KinematicTree&) { return page; });
+                 file.mechanism_path, arguments, same, std::move(design));
 }
 
 /// A folder of `vmech loads` holds the scene in its report.

@@ -53,13 +53,15 @@ std::string ViewPage(const std::string& title, const std::string& scene_json) {
 }
 
 std::string MechanismPage(const KinematicTree& assembled, std::vector<std::string> meshes,
-                          std::string_view version, std::string_view session) {
+                          std::string_view version, std::string_view session,
+                          std::string_view parameters) {
   Scene scene;
   scene.title = assembled.mechanism.name;
   scene.version = version;
   scene.tree = &assembled;
   scene.meshes = std::move(meshes);
   scene.session = session;
+  scene.parameters = parameters;
   return ViewPage(scene.title, SceneJson(scene));
 }
 

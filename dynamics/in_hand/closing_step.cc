@@ -51,6 +51,22 @@ bool ClosingStep::Close(const VectorXd& q, const VectorXd& v, const VectorXd& ne
   }
 }
 
+bool ClosingStep::Reclose(const VectorXd& q, SaddleSystem* system, GraspedMechanism* pose,
+                          VectorXd* next_q) noexcept {
+  *next_q = q;
+  if (tree_.loops.empty()) return true;
+  for (int i = 0;; ++i) {
+    squared_closure_ = SquaredNorm(pose->e2());
+    if (i == kClosingSteps || squared_closure_ <= kClosed * kClosed ||
+        !std::isfinite(squared_closure_)) {
+      return squared_closure_ <= kStillClosed * kStillClosed;
+    }
+    system->SolveOnce(pose->C(), zero_, pose->e2(), &x_);
+    MoveCoordinates(tree_, x_.data(), next_q->data());
+    pose->SetLoops(*next_q);
+  }
+}
+
 /// Adds to the step what closes the loops at its end, where it leaves errors of
 ///
 ///   e2 - T C v+ - T^2/2 C'(v+) v+ = e2 - T d - T^2/2 C'(v+) v+

@@ -15,6 +15,10 @@ class ClosingStep {
   /// step make up for. False where the loops do not close; `pose` is at q+.
   bool Close(const VectorXd& q, const VectorXd& v, const VectorXd& next_v, const VectorXd& d,
              double step, SaddleSystem* system, GraspedMechanism* pose, VectorXd* next_q) noexcept;
+  /// Closes the loops, whose errors at q are in `pose`, with the factor in `system`, as when the
+  /// mechanism itself has changed. False where they do not close; `pose` is at next_q.
+  bool Reclose(const VectorXd& q, SaddleSystem* system, GraspedMechanism* pose,
+               VectorXd* next_q) noexcept;
   /// Forgets how the last step went.
   void Restart() noexcept { last_closure_defect_.setZero(); }
   double closure() const noexcept;  ///< norm of the loop errors, lengths over L

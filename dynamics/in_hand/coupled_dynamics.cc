@@ -136,6 +136,47 @@ void CoupledDynamics::Loosen(double rate, int hand) noexcept {
   LetGo(hand);
 }
 
+DesignStatus CoupledDynamics::ChangeDesign(const HeldDesign& from, const HeldDesign& to,
+                                           const WrenchLimit& most) noexcept {
+  Stretch();
+  const double before = Energy();
+  pose_.ChangeDesign(from, to);
+  passive_.Take(to);
+  const DesignStatus status = Reassemble(most);
+  if (status == DesignStatus::kTaken) {
+    q_.swap(next_q_);
+    closing_.Restart();
+  } else {
+    pose_.ChangeDesign(to, from);
+    passive_.Take(from);
+    pose_.SetLoops(q_);
+  }
+  pose_.SetJacobians();
+  system_.SetConstraints(pose_.C());
+  UpdateInertia();
+  UpdateVelocities();
+  Stretch();
+  if (status == DesignStatus::kTaken) design_work_ += Energy() - before;
+  return status;
+}
+
+/// Closes the loops of the new numbers from q_ to next_q_, against the matrix of the last step.
+DesignStatus CoupledDynamics::Reassemble(const WrenchLimit& most) noexcept {
+  if (!system_.Factor(A_)) return DesignStatus::kOpen;
+  pose_.SetLoops(q_);
+  if (!closing_.Reclose(q_, &system_, &pose_, &next_q_)) return DesignStatus::kOpen;
+  for (int i = 0; i < hands(); ++i) {
+    const Hand& hand = hands_[i];
+    if (!hand.coupled) continue;
+    const Screw way = HandError(pose_.FindGraspFrame(i), pose_.grasp_frame(i));
+    const Screw change = Scaled(hand.coupling.stiffness(), way);
+    if (Length(change.linear) > most.force || Length(change.angular) > most.moment) {
+      return DesignStatus::kTooFar;
+    }
+  }
+  return DesignStatus::kTaken;
+}
+
 CoupledStatus CoupledDynamics::Step(const Posed& X_WH, const Vector6d& V_WH) noexcept {
   return Step({FrameOf(X_WH), ScrewOf(V_WH)});
 }

@@ -18,6 +18,13 @@ enum class CoupledStatus {
   kFailed,   ///< a value is not finite; the pose stays, the wrenches are undefined
 };
 
+/// What a change of a mechanism's design came to.
+enum class DesignStatus {
+  kTaken,
+  kTooFar,  ///< a coupling would pull too much more; the mechanism is as it was
+  kOpen,    ///< the loops do not close; the mechanism is as it was
+};
+
 /// How a hand holds a mechanism.
 struct CoupledGrasp {
   GraspFrame frame;
@@ -64,6 +71,14 @@ class CoupledDynamics {
   /// Energy [J] that the mechanism has and the hand did not give: the next step takes it out of the
   /// velocities, as far as they have it.
   void Owe(double energy) noexcept { energy_limit_.Owe(energy); }
+  /// Takes the numbers of the design `to` in place of `from`, which it has: the loops are closed
+  /// anew near the present pose, with as little motion against inertia and couplings as can be. Its
+  /// parts keep their velocities, and what the change itself would move is left out. `most`: by how
+  /// much the force and the moment of a coupling may change [N], [N m].
+  [[nodiscard]] DesignStatus ChangeDesign(const HeldDesign& from, const HeldDesign& to,
+                                          const WrenchLimit& most) noexcept;
+  /// Of all changes on the mechanism [J]: by how much they have raised its energy.
+  double design_work() const noexcept { return design_work_; }
   /// Where a hand is in the next step, and how it moves; it stays there.
   void SetHand(const MovingFrame& frame, int hand = 0) noexcept { hands_[hand].at = frame; }
   [[nodiscard]] CoupledStatus Step() noexcept;
@@ -120,6 +135,7 @@ class CoupledDynamics {
   bool Slip() noexcept;
   void FindWrenches() noexcept;
   CoupledStatus Move() noexcept;
+  DesignStatus Reassemble(const WrenchLimit& most) noexcept;
   void UpdateInertia() noexcept;
   void UpdateVelocities() noexcept;
   void Stretch() noexcept;
@@ -139,6 +155,7 @@ class CoupledDynamics {
   std::vector<Wrenchd> joints_;
   std::vector<Screw> w_;                // of every hand
   double kinetic_ = 0, potential_ = 0;  // without the couplings' [J]
+  double design_work_ = 0;              // [J]
 };
 
 }  // namespace vmech

@@ -11,9 +11,17 @@
 #include "vmech/kinematics/tree/validity.h"
 
 namespace vmech {
+namespace {
+
+bool IsSame(const GraspFrame& a, const GraspFrame& b) noexcept {
+  return a.node == b.node && a.X_BG.R == b.X_BG.R && a.X_BG.p == b.X_BG.p;
+}
+
+}  // namespace
 
 GraspedMechanism::GraspedMechanism(const KinematicTree& tree, std::span<const GraspFrame> grasps)
     : tree_(tree),
+      gravity_W_(tree.mechanism.gravity_W),
       row_scale_(LoopRowScale(tree)),
       ws_(tree),
       inertias_(tree),
@@ -24,7 +32,24 @@ GraspedMechanism::GraspedMechanism(const KinematicTree& tree, std::span<const Gr
     RequireNode("grasp.node", tree, grasp.node);
     grasps_.push_back({grasp, {}, std::vector<Screw>(static_cast<size_t>(tree.nv))});
   }
-  SetGravity(tree.mechanism.gravity_W, &ws_);
+  SetGravity(gravity_W_, &ws_);
+}
+
+void GraspedMechanism::ChangeDesign(const HeldDesign& from, const HeldDesign& to) noexcept {
+  for (size_t i = 0; i < grasps_.size(); ++i) {
+    GraspFrame& frame = grasps_[i].frame;
+    const auto node = static_cast<size_t>(frame.node);
+    if (i < from.grasps.size() && IsSame(frame, from.grasps[i])) {
+      frame = to.grasps[i];
+    } else if (frame.node >= 0) {
+      const Posed &before = from.tree.nodes[node].X_BL, &after = to.tree.nodes[node].X_BL;
+      frame.X_BG = after * before.inverse() * frame.X_BG;
+    }
+  }
+  ws_.Take(tree_, to.tree);
+  inertias_.Take(to.tree);
+  gravity_W_ = to.gravity_W;
+  SetGravity(gravity_W_, &ws_);
 }
 
 void GraspedMechanism::Set(const VectorXd& q) noexcept {
@@ -71,9 +96,17 @@ void GraspedMechanism::SetJacobians() noexcept {
   }
 }
 
-Frame GraspedMechanism::grasp_frame(int hand) const noexcept {
-  const Frame& G = grasps_[hand].G;
+Frame GraspedMechanism::InWorld(const Frame& G) const noexcept {
   return {G.x, G.y, G.z, G.p + Double4Of(ws_.reference)};
+}
+
+Frame GraspedMechanism::grasp_frame(int hand) const noexcept {
+  return InWorld(grasps_[hand].G);
+}
+
+Frame GraspedMechanism::FindGraspFrame(int hand) const noexcept {
+  const GraspFrame& frame = grasps_[hand].frame;
+  return InWorld(ws_.at(frame.node).X * frame.X_BG);
 }
 
 Posed GraspedMechanism::X_WG(int hand) const noexcept {

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "vmech/dynamics/in_hand/held_design.h"
 #include "vmech/dynamics/reactions/joint_wrenches.h"
 #include "vmech/dynamics/rigid_body/newton_euler.h"
 #include "vmech/kinematics/inverse/inverse_kinematics.h"
@@ -24,6 +25,10 @@ class GraspedMechanism {
   void SetGrasp(const GraspFrame& grasp, int hand = 0) noexcept { grasps_[hand].frame = grasp; }
   const GraspFrame& grasp(int hand = 0) const noexcept { return grasps_[hand].frame; }
 
+  /// Takes the numbers of another design, from the next Set on. A hand at its grasp of `from` is at
+  /// that of `to`; another goes on holding its link where it does.
+  void ChangeDesign(const HeldDesign& from, const HeldDesign& to) noexcept;
+
   /// Takes q [nq].
   void Set(const VectorXd& q) noexcept;
   /// The same from a workspace of the same tree, after ForwardKinematics and LoopErrors.
@@ -35,6 +40,8 @@ class GraspedMechanism {
 
   Posed X_WG(int hand = 0) const noexcept;
   Frame grasp_frame(int hand = 0) const noexcept;  ///< the same
+  /// Where it is after SetLoops already.
+  Frame FindGraspFrame(int hand = 0) const noexcept;
   Posed X_WB(int node) const noexcept;
   Matrix6Xd J() const;  ///< [6, nv], V_WG = J v
   /// B [8, nv] = root J with zeros below either three rows: B'B = J' root^2 J.
@@ -84,7 +91,7 @@ class GraspedMechanism {
   Screw CutTwist(int loop, const VectorXd& v) const noexcept;  ///< B v
 
   /// Zero with all centres of gravity at the height of the reference point [J].
-  double WeightEnergy() const noexcept { return vmech::WeightEnergy(tree_, inertias_); }
+  double WeightEnergy() const noexcept { return vmech::WeightEnergy(gravity_W_, inertias_); }
 
  private:
   struct Grasped {
@@ -93,12 +100,14 @@ class GraspedMechanism {
     std::vector<Screw> J;  // columns
   };
 
+  Frame InWorld(const Frame& G) const noexcept;
   void ScaleLoopErrors() noexcept;
   void StartLoads(std::span<const Screw> w) noexcept;
   void LoadLoop(const Loop& loop, const Screw& W) noexcept;
   void FinishLoads(std::vector<Wrenchd>* joints) noexcept;
 
   const KinematicTree& tree_;
+  Vector3d gravity_W_;
   std::vector<Grasped> grasps_;
   VectorXd row_scale_;
   TreeWorkspace<double> ws_;

@@ -20,11 +20,13 @@ constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 PassiveJoints::PassiveJoints(const KinematicTree& tree) {
   RefuseUnrenderedFriction(tree);
-  for (const TreeNode& node : tree.nodes) {
+  for (size_t i = 0; i < tree.nodes.size(); ++i) {
+    const TreeNode& node = tree.nodes[i];
     if (node.v < 0 || node.motion == NodeMotion::kSpherical) continue;
     const Joint& joint = tree.mechanism.joints[node.joint];
     const bool alone = joint.type == JointType::kUniversal;  // two pins, each slides for itself
-    const Freedom freedom{node.q,
+    const Freedom freedom{static_cast<int>(i),
+                          node.q,
                           node.v,
                           joint.passive[node.freedom],
                           joint.lower[node.freedom],
@@ -33,6 +35,15 @@ PassiveJoints::PassiveJoints(const KinematicTree& tree) {
     if (HasPassive(freedom.passive) || freedom.lower > -kNoLimit || freedom.upper < kNoLimit) {
       freedoms_.push_back(freedom);
     }
+  }
+}
+
+void PassiveJoints::Take(const HeldDesign& design) noexcept {
+  for (Freedom& freedom : freedoms_) {
+    const HeldDesign::FreedomNumbers& numbers = design.freedoms[static_cast<size_t>(freedom.node)];
+    freedom.passive = numbers.passive;
+    freedom.lower = numbers.lower;
+    freedom.upper = numbers.upper;
   }
 }
 
@@ -105,10 +116,6 @@ bool PassiveJoints::ChangeLimits(const VectorXd& q, const VectorXd& next_v, doub
     at_limit_ |= f.held != 0;
   }
   return changed;
-}
-
-bool HasPassive(const Passive& passive) {
-  return passive.stiffness != 0 || passive.viscous != 0 || passive.coulomb != 0;
 }
 
 SpanningTreeOptions KeepPassiveJoints(const Mechanism& mechanism) {

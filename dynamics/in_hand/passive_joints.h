@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "vmech/dynamics/in_hand/held_design.h"
 #include "vmech/kinematics/tree/kinematic_tree.h"
 
 namespace vmech {
@@ -13,6 +14,9 @@ class PassiveJoints {
   /// @throws std::invalid_argument naming the joint for friction in proportion to a joint's load,
   /// and for springs or friction at a cut joint, which are beyond these paths.
   explicit PassiveJoints(const KinematicTree& tree);
+
+  /// Takes other numbers of the same freedoms.
+  void Take(const HeldDesign& design) noexcept;
 
   /// Adds them to A v+ = right: a spring and a damper as they are, dry friction as the damper that
   /// it is at the velocities v, of all freedoms of a contact together.
@@ -33,7 +37,7 @@ class PassiveJoints {
  private:
   /// A coordinate of its own with a spring, friction or limits.
   struct Freedom {
-    int q, v;
+    int node, q, v;
     Passive passive;
     double lower, upper;
     int contact;   // the same for all freedoms that slide together
@@ -47,9 +51,6 @@ class PassiveJoints {
   std::vector<Freedom> freedoms_;
   bool at_limit_ = false;
 };
-
-/// Does this freedom have a spring or friction?
-bool HasPassive(const Passive& passive);
 
 /// Dry friction builds up in proportion to the speed until here [m/s] or [rad/s].
 inline constexpr double kSlowSliding = 1e-2;

@@ -79,12 +79,10 @@ TreeInertias<T>::TreeInertias(const KinematicTree& tree, const TreeDesign<T>& de
       composites(bodies),
       received(bodies),
       has_received(bodies.size()) {
+  Take(design);
   const int n = tree.nv;
   for (int i = 0; i < static_cast<int>(tree.nodes.size()); ++i) {
     const TreeNode& node = tree.nodes[i];
-    const auto& [X_PF, X_BL, pitch, mass, p_BoBcm, I] = design.nodes[i];
-    in_node[i + 1] = {mass, TripleOf<T>(p_BoBcm), TripleOf<T>(I.col(0)), TripleOf<T>(I.col(1)),
-                      TripleOf<T>(I.col(2))};
     for (int v = node.v; v < node.v + VelocitiesOf(node.motion); ++v) {
       const auto add = [&](int u) { entries.push_back({i + 1, v, u, v * n + u, u * n + v}); };
       add(v);
@@ -95,6 +93,15 @@ TreeInertias<T>::TreeInertias(const KinematicTree& tree, const TreeDesign<T>& de
         }
       }
     }
+  }
+}
+
+template <typename T>
+void TreeInertias<T>::Take(const TreeDesign<T>& design) noexcept {
+  for (size_t i = 0; i < design.nodes.size(); ++i) {
+    const auto& [X_PF, X_BL, pitch, mass, p_BoBcm, I] = design.nodes[i];
+    in_node[i + 1] = {mass, TripleOf<T>(p_BoBcm), TripleOf<T>(I.col(0)), TripleOf<T>(I.col(1)),
+                      TripleOf<T>(I.col(2))};
   }
 }
 
@@ -174,10 +181,10 @@ double KineticEnergy(const KinematicTree& tree, const TreeInertias<double>& iner
   return energy;
 }
 
-double WeightEnergy(const KinematicTree& tree, const TreeInertias<double>& inertias) noexcept {
+double WeightEnergy(const Vector3d& gravity_W, const TreeInertias<double>& inertias) noexcept {
   Double4 moment{};
   for (const ScrewInertia& body : inertias.bodies) moment += body.moment;
-  return -Dot(Double4Of(tree.mechanism.gravity_W), moment);
+  return -Dot(Double4Of(gravity_W), moment);
 }
 
 MatrixXd MassMatrix(const KinematicTree& tree, const VectorXd& q) {

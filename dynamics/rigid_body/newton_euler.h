@@ -17,6 +17,9 @@ struct TreeInertias {
   /// With other numbers than the tree's.
   TreeInertias(const KinematicTree& tree, const TreeDesign<T>& design);
 
+  /// Takes other numbers of the same tree.
+  void Take(const TreeDesign<T>& design) noexcept;
+
   /// As in TreeNode, axes of the node.
   struct Body {
     T mass = T(0);
@@ -86,7 +89,7 @@ double KineticEnergy(const KinematicTree& tree, const TreeInertias<double>& iner
                      const TreeWorkspace<double>& ws) noexcept;
 /// - sum m g . p_cm [J], zero where every centre of gravity is at the height of the reference
 /// point. Needs BodyInertias.
-double WeightEnergy(const KinematicTree& tree, const TreeInertias<double>& inertias) noexcept;
+double WeightEnergy(const Vector3d& gravity_W, const TreeInertias<double>& inertias) noexcept;
 
 /// M(q) [nv, nv].
 MatrixXd MassMatrix(const KinematicTree& tree, const VectorXd& q);

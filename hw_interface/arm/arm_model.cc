@@ -144,7 +144,7 @@ void ArmModel::Momenta(const double* v, double* momenta) noexcept {
 
 double ArmModel::PotentialEnergy() noexcept {
   BodyInertias(arm_->tree, ws_, &inertias_);
-  return WeightEnergy(arm_->tree, inertias_);
+  return WeightEnergy(arm_->tree.mechanism.gravity_W, inertias_);
 }
 
 const VectorXd& ArmModel::Accelerations(const VectorXd& v, const VectorXd& torque,

@@ -42,7 +42,7 @@ struct MechanismState {
     JointFrames(tree, ws, &joints);
     closure = LargestLoopError(tree, ws);
     kinetic = KineticEnergy(tree, inertias, ws);
-    weight = WeightEnergy(tree, inertias);
+    weight = WeightEnergy(tree.mechanism.gravity_W, inertias);
     momenta.clear();
     for (size_t i = 0; i < ws.nodes.size(); ++i) {
       momenta.push_back(i == 0 ? Screw{} : inertias.bodies[i] * ws.nodes[i].V);

@@ -131,7 +131,7 @@ void CoupledTick::Reset() noexcept {
     hand.worked = 0;
   }
   dynamics_.Stop();
-  shares_.Reset(dynamics_.Energy());
+  shares_.Reset(EnergyOfHands());
   peaks_.Reset();
   summary_ = {};
 }
@@ -171,6 +171,14 @@ void CoupledTick::Show(TickPicture* picture) const noexcept {
     hand.X_WG = dynamics_.X_WG(i);
     hand.dynamic = dynamics_.w(i);
   }
+}
+
+DesignStatus CoupledTick::ChangeDesign(const HeldDesign& from, const HeldDesign& to,
+                                       const WrenchLimit& most) noexcept {
+  const DesignStatus status = dynamics_.ChangeDesign(from, to, most.Times(1 / options_.scale));
+  if (status != DesignStatus::kTaken) return status;
+  for (int i = 0; i < hands(); ++i) hands_[i].named = to.grasps[static_cast<size_t>(i)];
+  return status;
 }
 
 /// Where the hand is, what its device can do, and whether it holds.
@@ -223,7 +231,7 @@ void CoupledTick::ShareEnergy(std::span<const TickInput> inputs) noexcept {
     const double weight = debts > 0 ? inputs[i].debt : 1;
     weights_[i] = hand.holds ? weight : 0;
   }
-  shares_.Update(dynamics_.Energy(), paid_, weights_);
+  shares_.Update(EnergyOfHands(), paid_, weights_);
 }
 
 /// What the mechanism does without a hand is no business of its.

@@ -85,6 +85,11 @@ class CoupledTick : public Tick {
 
   void Show(TickPicture* picture) const noexcept override;
 
+  /// As CoupledDynamics::ChangeDesign, `grasps` those of the hands; what a hand feels changes by
+  /// `most` at most. What the change gives the mechanism is no energy that a hand has stored.
+  [[nodiscard]] DesignStatus ChangeDesign(const HeldDesign& from, const HeldDesign& to,
+                                          const WrenchLimit& most) noexcept;
+
   const CoupledDynamics& dynamics() const noexcept { return dynamics_; }
   const CoupledSummary& summary() const noexcept { return summary_; }
   /// Largest force of each joint since the hand took hold [N].
@@ -106,6 +111,7 @@ class CoupledTick : public Tick {
   void ReadHand(const TickInput& input, Hand* hand) noexcept;
   CoupledStatus Move() noexcept;
   void ShareEnergy(std::span<const TickInput> inputs) noexcept;
+  double EnergyOfHands() const noexcept { return dynamics_.Energy() - dynamics_.design_work(); }
   double StoredEnergy(bool held, int hand) noexcept;
   void Account(CoupledStatus status, std::span<double> channels) noexcept;
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "vmech/base/pose.h"
@@ -21,6 +22,12 @@ struct TickPicture : HandPicture {
   VectorXd q, v;                    ///< of the mechanism's tree [nq], [nv]
   std::vector<Wrenchd> joints;      ///< every joint's wrench, as JointSample
   std::vector<HandPicture> others;  ///< hands beside the first
+  // Of a mechanism whose design is varied (VariedTick):
+  VectorXd design;                  ///< values of its parameters; empty: it is not
+  std::uint64_t design_number = 0;  ///< of the design that it goes to
+  bool design_arrived = true;       ///< there
+  bool design_stopped = false;      ///< or where its loops close no further
+  double design_work = 0;           ///< of the changes on the mechanism [J]
 
   HandPicture& hand(int i) noexcept { return i == 0 ? *this : others[i - 1]; }
   const HandPicture& hand(int i) const noexcept { return i == 0 ? *this : others[i - 1]; }

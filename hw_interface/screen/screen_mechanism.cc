@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 #include "vmech/base/screw_algebra.h"
@@ -22,6 +23,7 @@ namespace {
 constexpr double kStretch = 5e-4;        // of the characteristic length, under the whole weight
 constexpr double kSlip = 0.05;           // of the characteristic length: the longest stretch
 constexpr double kFrequency = 100;       // of the whole mass on the spring, at least [rad/s]
+constexpr double kSmooth = 0.01;         // of the longest stretch: of a design's change in a step
 constexpr double kMouseLag = 15e-3;      // with which the hand follows the mouse [s]
 constexpr double kPathPeriod = 5e-3;     // between rows of the recorded path [s]
 constexpr size_t kLongestPath = 200000;  // rows
@@ -45,8 +47,7 @@ Mechanism LeaveOut(Mechanism mechanism, const SpanningTree& spanning,
   return mechanism;
 }
 
-std::unique_ptr<const KinematicTree> MakeTree(Mechanism mechanism,
-                                              std::vector<std::string>* notes) {
+std::unique_ptr<KinematicTree> MakeTree(Mechanism mechanism, std::vector<std::string>* notes) {
   SpanningTreeOptions cuts = KeepPassiveJoints(mechanism);
   cuts.prefer.insert(cuts.prefer.begin(), cuts.keep.begin(), cuts.keep.end());
   cuts.keep.clear();
@@ -204,7 +205,11 @@ void ScreenMechanism::Freeze() {
 }
 
 void ScreenMechanism::Reset() {
-  StandAt(start_);
+  VectorXd q = start_;
+  if (design_ && !Assemble(*tree_, AssemblyOptions(), &q).closed) {
+    throw std::runtime_error("its loops do not close near its start any more; it stays here");
+  }
+  StandAt(q);
   time_ = 0;
 }
 
@@ -264,17 +269,58 @@ MovingFrame ScreenMechanism::MoveHand() noexcept {
   return {FrameOf(X_WH), ScrewOf(Stacked<double>(velocity, Vector3d::Zero()))};
 }
 
+std::vector<int> ScreenMechanism::AllGrasps() const {
+  std::vector<int> all(mechanism().grasps.size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+void ScreenMechanism::VaryTo(const HeldDesign& start, const HeldDesign& design) {
+  if (!design_) design_.emplace(start);
+  design_->GoTo(design);
+}
+
+/// A step on the way to another design; the mouse's spring is to be stretched no faster than a hand
+/// feels smoothly. True if the mechanism has changed.
+bool ScreenMechanism::Vary() {
+  if (!design_ || !design_->moves()) return false;
+  const WrenchLimit most = {kSmooth * MouseSpring().max_force};
+  const double work = dynamics_->design_work();
+  const bool changed = design_->Advance([&](const HeldDesign& from, const HeldDesign& to) noexcept {
+    return dynamics_->ChangeDesign(from, to, most);
+  });
+  design_work_ += dynamics_->design_work() - work;
+  return changed;
+}
+
+/// The tree with the numbers of the design; who refers to it goes by its topology alone. A drag
+/// begins anew: it is one of one mechanism.
+void ScreenMechanism::TakeDesign() {
+  const std::vector<int> cuts = tree_->spanning.cuts;
+  *tree_ = BuildKinematicTree(MechanismWith(design_->now(), *tree_, AllGrasps()), {{}, cuts, {}});
+  path_ = {};
+  path_time_ = 0;
+  if (hand_) path_ = {hand_->link, hand_->p_L, dynamics_->q(), {0}, {dynamics_->X_WG().p}};
+}
+
 void ScreenMechanism::Advance(int steps) {
-  if (mode_ == ScreenMode::kFrozen) return;
-  for (int i = 0; i < steps; ++i) {
-    const CoupledStatus status = dynamics_->Step(MoveHand());
+  if (!moves()) return;
+  SetInMotion();
+  bool changed = false;
+  CoupledStatus status = CoupledStatus::kMoved;
+  for (int i = 0; i < steps && status != CoupledStatus::kFailed; ++i) {
+    changed = Vary() || changed;
+    if (mode_ == ScreenMode::kFrozen) continue;
+    status = dynamics_->Step(MoveHand());
     time_ += kStep;
-    if (status == CoupledStatus::kFailed) {
-      Freeze();
-      throw std::runtime_error("the motion came to no finite numbers; the mechanism stands still");
-    }
     stopped_ = status == CoupledStatus::kStopped;
     Record();
+  }
+  if (changed) TakeDesign();
+  const bool failed = status == CoupledStatus::kFailed;
+  if (failed || mode_ == ScreenMode::kFrozen) Freeze();
+  if (failed) {
+    throw std::runtime_error("the motion came to no finite numbers; the mechanism stands still");
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include "vmech/dynamics/in_hand/coupled_dynamics.h"
 #include "vmech/dynamics/reactions/certainty.h"
+#include "vmech/hw_interface/variation/design_path.h"
 #include "vmech/kinematics/inverse/assembly_modes.h"
 
 namespace vmech {
@@ -65,7 +66,7 @@ class ScreenMechanism {
   const Mechanism& mechanism() const { return tree_->mechanism; }
   const KinematicTree& tree() const { return *tree_; }
   const VectorXd& q() const { return dynamics_ ? dynamics_->q() : q_; }
-  bool moves() const { return mode_ != ScreenMode::kFrozen; }
+  bool moves() const { return mode_ != ScreenMode::kFrozen || (design_ && design_->moves()); }
 
   // Requests. All throw std::invalid_argument, naming the value, for what does not exist or is not
   // finite, and leave everything as it was.
@@ -90,6 +91,14 @@ class ScreenMechanism {
   /// Stands still at a closed pose of the tree.
   void GoTo(const VectorXd& q);
 
+  /// Changes the mechanism to another design of the same sizes as time passes, a little at each
+  /// step, wherever it is and whoever holds it; it need not move otherwise. Designs are those of a
+  /// DesignGuide without hands; `start` is that which the mechanism had in the beginning.
+  void VaryTo(const HeldDesign& start, const HeldDesign& design);
+  /// Where it is on the way; null where nothing was varied.
+  const DesignPath* design() const { return design_ ? &*design_ : nullptr; }
+  double design_work() const { return design_work_; }  ///< of all changes [J]
+
   /// Lets time pass, a whole number of steps.
   void Advance(int steps);
 
@@ -107,6 +116,9 @@ class ScreenMechanism {
   };
 
   void SetInMotion();
+  bool Vary();
+  void TakeDesign();
+  std::vector<int> AllGrasps() const;
   HandCoupling MouseSpring() const;
   void StandAt(const VectorXd& q);
   GraspFrame FrameAt(int link, const Vector3d& p_L) const;
@@ -115,7 +127,7 @@ class ScreenMechanism {
   void CheckFreedom(int joint, int freedom) const;
 
   std::vector<std::string> notes_;
-  std::unique_ptr<const KinematicTree> tree_;
+  std::unique_ptr<KinematicTree> tree_;
   VectorXd start_, q_;
   double mass_ = 0;  ///< of all that moves [kg]
   ScreenMode mode_ = ScreenMode::kFrozen;
@@ -123,6 +135,8 @@ class ScreenMechanism {
   std::unique_ptr<CoupledDynamics> dynamics_;  ///< where it moves
   std::optional<Hand> hand_;
   bool stopped_ = false;
+  std::optional<DesignPath> design_;
+  double design_work_ = 0;
   DraggedPath path_;
   double path_time_ = 0;  ///< since the grab [s]
 };

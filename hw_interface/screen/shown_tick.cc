@@ -2,18 +2,12 @@
 
 namespace vmech {
 
-TickOutput ShownTick::Step(const TickInput& input, std::span<double> channels) noexcept {
-  TickOutput output;
-  StepHands({&input, 1}, {&output, 1}, channels);
-  return output;
-}
-
 void ShownTick::StepHands(std::span<const TickInput> inputs, std::span<TickOutput> outputs,
                           std::span<double> channels) noexcept {
-  tick_->StepHands(inputs, outputs, channels);
+  TickAround::StepHands(inputs, outputs, channels);
   if (!pictures_.wanted()) return;
   TickPicture& picture = pictures_.back();
-  tick_->Show(&picture);
+  Show(&picture);
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     HandPicture& hand = picture.hand(static_cast<int>(i));
     hand.F_Ho_W = outputs[i].F_Ho_W;

@@ -15,27 +15,33 @@ TreeWorkspace<T>::TreeWorkspace(const KinematicTree& tree, const TreeDesign<T>& 
     : reference(tree.reference),
       nodes(tree.nodes.size() + 1),
       S(tree.nv),
+      placements(design.placements.size()),
       loops(tree.loops.size()),
       sine(PaddedSize(static_cast<int>(tree.revolute_coordinates.size()))),
       cosine(sine) {
   at(-1).X.p = TripleOf<T>(-reference.cast<T>());
-  for (size_t i = 0; i < tree.nodes.size(); ++i) {
-    nodes[i + 1].X_PF = FrameOf(design.nodes[i].X_PF);
-    nodes[i + 1].X_BL = FrameOf(design.nodes[i].X_BL);
-    nodes[i + 1].pitch = design.nodes[i].pitch;
-  }
-  for (const typename TreeDesign<T>::PlacementNumbers& place : design.placements) {
-    placements.push_back({FrameOf(place.X_AF), FrameOf(place.X_BM)});
-  }
-  for (size_t l = 0; l < tree.loops.size(); ++l) {
-    loops[l].pitch = design.placements[tree.loops[l].joint].pitch;
-  }
+  Take(tree, design);
   int columns = 0;
   for (const Loop& loop : tree.loops) {
     first_column.push_back(columns);
     columns += static_cast<int>(loop.columns.size());
   }
   loop_columns.assign(columns, Vector6<T>::Zero());
+}
+
+template <typename T>
+void TreeWorkspace<T>::Take(const KinematicTree& tree, const TreeDesign<T>& design) noexcept {
+  for (size_t i = 0; i < design.nodes.size(); ++i) {
+    nodes[i + 1].X_PF = FrameOf(design.nodes[i].X_PF);
+    nodes[i + 1].X_BL = FrameOf(design.nodes[i].X_BL);
+    nodes[i + 1].pitch = design.nodes[i].pitch;
+  }
+  for (size_t j = 0; j < placements.size(); ++j) {
+    placements[j] = {FrameOf(design.placements[j].X_AF), FrameOf(design.placements[j].X_BM)};
+  }
+  for (size_t l = 0; l < loops.size(); ++l) {
+    loops[l].pitch = design.placements[tree.loops[l].joint].pitch;
+  }
 }
 
 template struct TreeWorkspace<double>;

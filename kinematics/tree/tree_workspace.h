@@ -31,6 +31,9 @@ struct TreeWorkspace {
   /// With other numbers than the tree's.
   TreeWorkspace(const KinematicTree& tree, const TreeDesign<T>& design);
 
+  /// Takes other numbers of the same tree. Poses and all that comes of them are not valid any more.
+  void Take(const KinematicTree& tree, const TreeDesign<T>& design) noexcept;
+
   /// Node i is at i + 1; the ground comes first.
   struct Node {
     FrameT<T> X_PF;  ///< as in TreeNode

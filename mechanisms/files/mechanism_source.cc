@@ -166,10 +166,12 @@ MechanismSource::MechanismSource(std::string_view text, const std::string& name,
     : text_(text), document_(text, name), users_(std::move(users)) {
   users_.push_back(Canonical(name));
   const Node root = document_.root();
-  if (root.kind() != Node::Kind::kMap) return;
-  units_ = ReadUnits(root["units"]);
-  scope_.units = units_.counting();
-  ReadParameters(root["parameters"], scope_.units, &table_);
+  if (root.kind() == Node::Kind::kMap) {
+    units_ = ReadUnits(root["units"]);
+    scope_.units = units_.counting();
+    ReadParameters(root["parameters"], scope_.units, &table_);
+  }
+  errors_of_text_ = document_.error_count();
 }
 
 MechanismSource::~MechanismSource() = default;
@@ -206,7 +208,7 @@ void MechanismSource::Resolve() {
 }
 
 Mechanism MechanismSource::Read() {
-  const size_t errors_before = document_.error_count();
+  document_.ForgetErrorsAfter(errors_of_text_);  // of other values
   while (true) {
     Resolve();
     Mechanism mechanism = ReadOnce();
@@ -218,7 +220,7 @@ Mechanism MechanismSource::Read() {
       if (users_.size() == 1) CheckWhole(mechanism);
       return mechanism;
     }
-    document_.ForgetErrorsAfter(errors_before);
+    document_.ForgetErrorsAfter(errors_of_text_);
   }
 }
 

@@ -39,6 +39,7 @@ class MechanismSource {
   const CountingUnits& units() const { return scope_.units; }
   /// The parameters; those that others declare here are seen by the expressions of the file.
   ParameterTable& parameters() { return table_; }
+  const ParameterTable& parameters() const { return table_; }
   /// What the parameters are, as of the last reading.
   const NamedQuantities<double>& values() const { return scope_.values; }
   std::vector<StatedParameter> stated() const;
@@ -74,6 +75,7 @@ class MechanismSource {
   ParameterTable table_;
   std::vector<std::filesystem::path> users_;                      ///< the file itself last
   std::map<std::string, std::unique_ptr<MechanismSource>> used_;  ///< by the name of the use
+  size_t errors_of_text_ = 0;                                     ///< whatever its parameters are
   std::vector<Node> link_nodes_;  ///< for each link of the mechanism the node that brought it
 };
 

@@ -132,7 +132,7 @@ TEST_P(EveryTree, WeightEnergyChangesAsTheCentresOfGravityRise) {
   const auto weight_energy = [&](const VectorXd& q) {
     ForwardKinematics(tree_, q.data(), &ws_);
     BodyInertias(tree_, ws_, &inertias_);
-    return WeightEnergy(tree_, inertias_);
+    return WeightEnergy(tree_.mechanism.gravity_W, inertias_);
   };
   const VectorXd other = RandomCoordinates(tree_, &random_);
   const double change = weight_energy(other) - weight_energy(q_);

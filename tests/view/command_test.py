@@ -201,6 +201,107 @@ class Hand(CommandTest):
         self.assertEqual(run.returncode, 0, run.stderr)
 
 
+PARAMETERS_STUDY = """
+vmech_study: "1.0"
+mechanism: four-bar-by-lengths.yaml
+units: {length: m, angle: rad}
+motion: {joint: main, rpm: 60, turns: 1, steps: 60}
+bearings:
+  rocker_pivot: {positions: [-0.02, 0.02], locating: 0, shaft: [10, 25], life_hours: 20000}
+"""
+
+
+class Design(CommandTest):
+    """A mechanism of which the parameters are moved on the page."""
+
+    def vary(self, name, value):
+        names = [p["name"] for p in self.do("return vmechView.scene.session.parameters")]
+        asked = names.index(name), value
+        self.do("vmechView.session.send({do: 'vary', parameter: arguments[0], "
+                "value: arguments[1]})", *asked)
+        self.wait("const d = vmechView.session.last.design; return d.stopped || "
+                  "Math.abs(d.values[arguments[0]] - arguments[1]) < 1e-12", *asked)
+        return self.state()["design"]
+
+    def crank_length(self):
+        links = self.do("return vmechView.scene.links")
+        crank = next(link for link in links if link["name"] == "crank")
+        return math.dist(*[anchor["pose"][:3] for anchor in crank["anchors"]])
+
+    def test_a_crank_that_is_held_grows(self):
+        self.open(EXAMPLES / "four-bar-by-lengths.yaml")
+        names = [p["name"] for p in self.do("return vmechView.scene.session.parameters")]
+        self.assertEqual(names, ["ground", "crank", "coupler", "rocker"])  # 'turn' is a start alone
+        self.do("vmechView.session.send({do: 'grab', link: 2, point: [0.6, 0, 0]})")
+        design = self.vary("crank", 0.4)
+        self.assertNotIn("stopped", design)
+        self.assertNotEqual(design["work"], 0)
+        self.wait("return vmechView.scene.links[1].anchors.some((a) => "
+                  "Math.abs(a.pose[0] - 0.4) < 1e-12)")
+        self.assertAlmostEqual(self.crank_length(), 0.4, delta=1e-12)
+        self.assertLess(self.settle()["closure"], 1e-9)
+        self.assertEqual(self.state()["mode"], "held")
+        # The pins are where circles of these lengths meet.
+        pin = self.do("return vmechView.pointOf(1, [0.4, 0, 0])")
+        end = self.do("return vmechView.pointOf(2, [1.2, 0, 0])")
+        self.assertAlmostEqual(math.hypot(*pin[:2]), 0.4, delta=1e-8)
+        self.assertAlmostEqual(math.dist(pin, end), 1.2, delta=1e-8)
+        self.assertAlmostEqual(math.dist(end[:2], [1.1, 0]), 0.75, delta=1e-8)
+        # What cannot be assembled is refused, with the reason.
+        self.assertIn("coupler = 2.4 m", self.vary("coupler", 2.4)["stopped"])
+        self.do("vmechView.session.view.on('files', (f) => { window.files = f; });"
+                "vmechView.session.send({do: 'save', what: 'parameters'})")
+        files = self.wait("return window.files")
+        saved = FOLDER / files[0]["name"]
+        saved.write_text(files[0]["text"])
+        self.assertIn("crank: 0.4 m\n", files[0]["text"])
+        self.assertIn("coupler: 1.2 m\n", files[0]["text"])
+        subprocess.run([VMECH, "check", str(saved)], check=True, stdout=subprocess.PIPE)
+        self.assertEqual(errors_of(BROWSER), [])
+
+    def test_the_figures_of_a_study_follow(self):
+        shutil.copy(EXAMPLES / "four-bar-by-lengths.yaml", FOLDER)
+        (FOLDER / "grows-study.yaml").write_text(PARAMETERS_STUDY)
+        self.open(FOLDER / "grows-study.yaml")
+        self.do("const receive = vmechView.session.receive.bind(vmechView.session);"
+                "vmechView.session.receive = (text) => { const m = JSON.parse(text);"
+                "if (m.outcome) window.outcome = m.outcome; receive(text); };")
+        self.vary("crank", 0.3)
+        self.wait("return window.outcome && outcome.state === 'done' && "
+                  "outcome.figures.some((f) => f.before !== f.now)")
+        figures = {f["name"]: f for f in self.do("return outcome.figures")}
+        shown = subprocess.run([VMECH, "sensitivities", "grows-study.yaml", "--set", "crank=0.3",
+                                "--by", "crank", "--out", "told"], cwd=FOLDER, check=True,
+                               stdout=subprocess.PIPE, text=True)
+        self.assertTrue(shown.stdout)
+        rows = [line.split(",") for line in
+                (FOLDER / "told" / "sensitivities.csv").read_text().splitlines()[1:]]
+        peaks = {row[0]: float(row[2]) for row in rows}
+        for name in ("main.force", "rocker_pivot.force", "main.drive"):
+            self.assertAlmostEqual(figures[name]["now"] / peaks[name], 1, delta=1e-9)
+            self.assertNotEqual(figures[name]["before"], figures[name]["now"])
+        elasticity = {row[0]: float(row[-1]) for row in rows if row[-1]}
+        for by in figures["main.drive"]["by"]:
+            if by["parameter"] == "crank":
+                self.assertAlmostEqual(by["percent"], elasticity["main.drive"], delta=1e-6)
+
+    def test_a_device_holds_it_while_it_changes(self):
+        command = [VMECH, "haptic", str(EXAMPLES / "four-bar-by-lengths.yaml"), "--view",
+                   "--seconds", "60"]
+        with subprocess.Popen(command, cwd=FOLDER, stdout=subprocess.PIPE, text=True) as session:
+            url = next(line.strip() for line in session.stdout if "http://" in line)
+            BROWSER.get(url)
+            self.wait("return window.vmechView && vmechView.session.received > 20")
+            design = self.vary("crank", 0.45)
+            self.assertNotIn("stopped", design)
+            self.wait("return vmechView.scene.links[1].anchors.some((a) => "
+                      "Math.abs(a.pose[0] - 0.45) < 1e-12)")
+            session.send_signal(signal.SIGINT)
+            said, _ = session.communicate(timeout=15)
+        self.assertIn("its design was changed", said)
+        self.assertEqual(session.returncode, 0)
+
+
 class Doors(CommandTest):
     def status(self, url, **headers):
         request = urllib.request.Request(url, headers=headers)

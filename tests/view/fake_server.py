@@ -1,6 +1,7 @@
 """A server of a live session made of the standard library: one page and its socket.
 
-It keeps every message of the page, and tells of a crank that follows the mouse.
+It keeps every message of the page, and tells of a crank that follows the mouse, and whose length
+follows what the page asks for.
 """
 
 import base64
@@ -22,6 +23,8 @@ class FakeServer:
         self.messages, self.connections = [], []
         self.theta, self.time, self.hand, self.echo = 0.6, 0.0, None, None
         self.at_limit = []
+        self.design = None    # {"values": [mm], "asked": [mm], "work": J} of the crank's length
+        self.longest = 1e9    # mm, of the crank
         self.listener = socket.create_server(("127.0.0.1", port))
         self.port = self.listener.getsockname()[1]
         self.running = True
@@ -102,9 +105,23 @@ class FakeServer:
         elif kind == "save":
             return {"save": message["what"],
                     "files": [{"name": "posed.yaml", "text": "name: four-bar\n"}]}
+        elif kind == "vary" and self.design:
+            self.design["asked"][message["parameter"]] = message["value"]
         elif kind == "next":
-            return {"state": self._state()}
+            fresh = self.design and self._follow()
+            return {"state": self._state(), **({"scene": self.mechanism.scene(0)} if fresh else {})}
         return None
+
+    def _follow(self):
+        """One step towards the length that was asked for; says whether there was one."""
+        (value,), (asked,) = self.design["values"], self.design["asked"]
+        goal = min(asked, self.longest)
+        self.design["stopped"] = (f"the loops do not close beyond crank = {goal} mm"
+                                  if asked > goal == value else "")
+        step = max(-1.0, min(1.0, goal - value))
+        self.design["values"] = [value + step]
+        self.mechanism.crank = 1e-3 * (value + step)
+        return step != 0
 
     def _state(self):
         self.time += 1 / 60
@@ -119,6 +136,8 @@ class FakeServer:
             tip = [long * math.cos(theta), long * math.sin(theta), 0]
             state["hand"] = {"link": 1, "point": tip, "target": self.hand["target"],
                              "force": [3, 4, 0], "moment": [0, 0, 0]}
+        if self.design:
+            state["design"] = self.design
         if self.echo is not None:
             state["echo"], self.echo = self.echo, None
         return state

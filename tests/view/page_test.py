@@ -1,6 +1,7 @@
 """Tests of the page in a real browser. Usage:
 page_test.py SCRIPTS CHROMIUM CHROMEDRIVER FOLDER"""
 
+import base64
 import json
 import math
 import pathlib
@@ -14,6 +15,7 @@ from selenium.webdriver.support.ui import WebDriverWait
 
 import scenes
 from browser import errors_of, open_browser, resize
+from design_tests import DesignTests
 from fake_server import FakeServer
 from mouse import Mouse
 from page_parts import page_html
@@ -46,6 +48,9 @@ class PageTest(unittest.TestCase):
     def wait(self, script, *arguments, seconds=10):
         return WebDriverWait(BROWSER, seconds, 0.05).until(
             lambda browser: browser.execute_script(script, *arguments))
+
+    def find(self, path):
+        return BROWSER.find_element(By.XPATH, path)
 
     def mouse(self, *steps):
         Mouse(BROWSER).steps(*steps)
@@ -214,7 +219,7 @@ class Files(PageTest):
         self.assertEqual(path.read_bytes()[:4], b"\x89PNG")
 
 
-class LiveSession(PageTest):
+class ServedTest(PageTest):
     def setUp(self):
         super().setUp()
         self.server = None
@@ -226,9 +231,13 @@ class LiveSession(PageTest):
             self.server.stop()
         errors_of(BROWSER)  # A lost server is told in the console by the browser itself.
 
-    def serve(self, writer=True, port=0):
+    def serve(self, writer=True, port=0, poses=0, mesh=None, **session):
+        """`poses` of a recorded motion; `mesh` of the rocker."""
         self.bar = scenes.FourBar()
-        scene = self.bar.scene(0, session={"socket": "/socket", "kind": "mechanism"})
+        session = {"socket": "/socket", "kind": "mechanism", **session}
+        scene = self.bar.scene(poses, session=session)
+        if mesh:
+            scene["links"][3]["mesh"] = base64.b64encode(mesh).decode()
         self.server = FakeServer(page_html(scene, SCRIPTS), self.bar, writer, port)
         BROWSER.get(self.server.address)
         self.wait("return Boolean(window.vmechView) && vmechView.session.received > 1")
@@ -239,6 +248,12 @@ class LiveSession(PageTest):
                        0.6 * self.bar.crank)
         return round(x), round(y)
 
+
+class LiveDesign(DesignTests, ServedTest):
+    pass
+
+
+class LiveSession(ServedTest):
     def test_a_drag_turns_the_crank_after_the_mouse_and_ends_with_it(self):
         self.serve()
         x, y = self.tip()

@@ -63,6 +63,17 @@ function readScene(element) {
   return scene;
 }
 
+// Takes over the numbers of a mechanism of the same parts, whose meshes stay. False if its parts are
+// others.
+function takeNumbers(scene, fresh) {
+  const lists = ["links", "joints", "grasps"];
+  if (lists.some((name) => fresh[name].length !== scene[name].length)) return false;
+  fresh.links.forEach((link, index) => { link.mesh = scene.links[index].mesh; });
+  for (const name of [...lists, "start", "length", "gravity"]) scene[name] = fresh[name];
+  numberFreedoms(scene);
+  return true;
+}
+
 // The anchor of one side ("first" or "second") of a joint, in the axes of its link.
 function anchorOf(scene, joint, side) {
   return scene.links[joint[side].link].anchors[joint[side].anchor];

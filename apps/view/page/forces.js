@@ -27,13 +27,20 @@ class Forces {
     for (const [name, colour] of Object.entries(kForceColours)) {
       this.pools[name] = new ArrowPool(this.root, colour, capacity, 0.0062 * this.length);
     }
-    this.anchors = this.scene.joints.map((joint) => ({
-      link: joint.second.link, point: anchorOf(this.scene, joint, "second").pose.slice(0, 3),
-      axes: joint.first.link, turned: anchorOf(this.scene, joint, "first").pose}));
     this.loads = (this.scene.motion ? this.scene.motion.loads : []);
     this.work = {point: [0, 0, 0], force: [0, 0, 0], moment: [0, 0, 0]};
     this.scaleUp = 1;
     this.findScales();
+    this.measure();
+  }
+
+  // Where the arrows of joints and weights begin, in the axes of the links.
+  measure() {
+    const {scene} = this, g = lengthOf(scene.gravity || [0, 0, 0]);
+    this.anchors = scene.joints.map((joint) => ({
+      link: joint.second.link, point: anchorOf(scene, joint, "second").pose.slice(0, 3),
+      axes: joint.first.link, turned: anchorOf(scene, joint, "first").pose}));
+    this.largest.weight = Math.max(0, ...scene.links.map((link) => g * (link.mass || 0)));
   }
 
   // The largest force takes 0.4 of the mechanism's length, and so does the largest moment.
@@ -43,10 +50,6 @@ class Forces {
     if (motion && motion.wrenches) this.include(motion.wrenches);
     for (const load of this.loads) this.include(load.wrenches);
     if (motion && motion.hand) this.include(motion.hand.wrenches);
-    const g = lengthOf(this.scene.gravity || [0, 0, 0]);
-    for (const link of this.scene.links) {
-      this.largest.weight = Math.max(this.largest.weight, g * (link.mass || 0));
-    }
   }
 
   include(wrenches) {

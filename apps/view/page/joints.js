@@ -6,6 +6,17 @@ class JointSymbols {
     this.shapes = shapes;
     this.scene = shapes.scene;
     this.sizes = shapes.sizes;
+    this.motion = shapes.scene.motion;  // as it was when the page began
+  }
+
+  // All that a joint's solids are made of.
+  inputsOf(index) {
+    const joint = this.scene.joints[index], {shapes} = this;
+    const side = (name) => [anchorOf(this.scene, joint, name).pose,
+      shapes.contacts[joint[name].link], shapes.layers[joint[name].link]];
+    const way = kSliding.includes(joint.type)
+        ? this.travel(index, this.slidingFreedom(joint)) : null;
+    return [joint, side("first"), side("second"), shapes.layered(), shapes.up, way];
   }
 
   // {first, second, steel}: solids in the axes of the first, the second and the first link.
@@ -155,7 +166,7 @@ class JointSymbols {
   // How far a sliding joint goes: within the motion, its limits, or a part of the
   // mechanism's length.
   travel(index, freedom) {
-    const joint = this.scene.joints[index], at = joint.at + freedom, motion = this.scene.motion;
+    const joint = this.scene.joints[index], at = joint.at + freedom, {motion} = this;
     const start = this.scene.start.coordinates ? this.scene.start.coordinates[at] || 0 : 0;
     let low = start, high = start;
     const settings = joint.freedoms[freedom];

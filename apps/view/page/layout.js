@@ -13,6 +13,10 @@ function buildLayout(view) {
   if (scene.motion) main.append(boxes.player);
   const side = make("div", {class: "vv-side"});
   if (scene.title) side.append(make("h2", {class: "vv-head", text: scene.title}));
+  if (scene.session && (scene.session.parameters || []).length) {
+    boxes.design = make("div", {});
+    side.append(section("Design", boxes.design));
+  }
   if (scene.session) side.append(section("Session", boxes.live));
   side.append(section("Numbers", boxes.values, boxes.plots), section("Show", boxes.show),
       section("Parts", boxes.tree));

@@ -12,12 +12,14 @@ class LivePanel {
     box.append(this.status, make("table", {class: "vv-values"}, this.figures));
     this.rows = new Map();
     this.controls = make("fieldset", {class: "vv-controls"});
-    box.append(this.controls);
+    this.files = make("p", {class: "vv-hint"});
+    box.append(this.controls, this.files);
     if (this.session.kind !== "haptic") this.buildControls();
     view.on("writer", () => this.showStatus());
     view.on("state", (state) => this.showState(state));
     view.on("modes", (message) => this.showModes(message));
     view.on("files", (files) => this.offer(files));
+    view.on("reshaped", () => this.forget());
     this.showStatus();
   }
 
@@ -37,8 +39,13 @@ class LivePanel {
         make("div", {class: "vv-row"},
             button("Save the pose", {do: "save", what: "mechanism"}, "As a mechanism file"),
             button("Save the drag", {do: "save", what: "motion"},
-                "As a study of vmech loads, with its mechanism and table")),
-        this.files = make("p", {class: "vv-hint"}));
+                "As a study of vmech loads, with its mechanism and table")));
+  }
+
+  // Of a mechanism with other numbers the assembly modes are others, and so may be its limits.
+  forget() {
+    if (this.modes) this.modes.replaceChildren();
+    for (const slider of this.sliders || []) this.boundSlider(slider);
   }
 
   // One file is saved at once; of several, which a browser would ask about, each by its link.
@@ -63,24 +70,24 @@ class LivePanel {
   }
 
   buildSlider(joint, index, freedom, k) {
-    const {scene} = this.view, {name, factor} = freedomUnit(scene, freedom);
-    const reach = freedom.rotation ? Math.PI : scene.length;
-    const bound = (value, other) => (Number.isFinite(value) && value !== null ? value : other);
-    const input = make("input", {type: "range", step: "any", min: bound(freedom.lower, -reach),
-      max: bound(freedom.upper, reach), "aria-label": freedom.name || joint.name});
+    const {name, factor} = freedomUnit(this.view.scene, freedom);
+    const input = make("input", {type: "range", step: "any",
+      "aria-label": freedom.name || joint.name});
     const out = make("output", {});
-    const slider = {input, out, at: joint.at + k, factor, unit: name, joint: index};
-    input.addEventListener("input", () => {
-      this.wanted = {do: "slide", joint: index, freedom: k, value: Number(input.value)};
-      if (!this.sliding) {
-        this.sliding = true;
-        this.view.stage.after.push(() => { this.sliding = false; this.session.send(this.wanted); });
-        this.view.stage.ask();
-      }
-    });
+    const slider = {input, out, at: joint.at + k, factor, unit: name, joint: index, freedom: k};
+    input.addEventListener("input", () => this.session.sendSoon("slide",
+        {do: "slide", joint: index, freedom: k, value: Number(input.value)}));
+    this.boundSlider(slider);
     this.sliders.push(slider);
     return make("label", {class: "vv-slider"}, make("span", {text: freedom.name || joint.name}),
         input, out);
+  }
+
+  boundSlider({input, joint, freedom}) {
+    const {scene} = this.view, settings = scene.joints[joint].freedoms[freedom];
+    const reach = settings.rotation ? Math.PI : scene.length;
+    input.min = Number.isFinite(settings.lower) ? settings.lower : -reach;
+    input.max = Number.isFinite(settings.upper) ? settings.upper : reach;
   }
 
   buildModes() {

@@ -15,6 +15,14 @@ function openView(root) {
   return view;
 }
 
+// The corners of a part in the axes of its link; null if nothing is drawn of it.
+function boundsOf(mesh) {
+  if (!mesh) return null;
+  mesh.geometry.computeBoundingBox();
+  const {min, max} = mesh.geometry.boundingBox;
+  return [min.toArray(), max.toArray()];
+}
+
 function exposed(view) {
   const {stage, now, player} = view;
   return {
@@ -36,9 +44,11 @@ function exposed(view) {
     gltf: () => Promise.resolve(new GltfWriter(view).write()),
     picture: () => view.exports.picture().toDataURL("image/png"),
     renderer: stage.rendererName,
+    geometries: () => stage.renderer.info.memory.geometries,
+    boundsOf: (link) => boundsOf(view.nodes.meshes.get("link " + link)),
     get shownAt() { return stage.shownAt; },
     drawn: () => stage.frames,
-    triangles: view.nodes.triangles,
+    get triangles() { return view.nodes.triangles; },
     scriptTimes: stage.scriptTimes,
     latencies: view.session ? view.session.latencies : [],
     session: view.session || null};

@@ -8,48 +8,72 @@ class MechanismNodes {
     this.plain = plain;
     this.shapes = shapes;
     this.root = new THREE.Group();
-    this.parts = [];         // meshes that can be picked; userData {kind, index, link}
-    this.triangles = 0;
-    this.links = scene.links.map((link, index) => this.addLink(link, index));
-    const symbols = new JointSymbols(shapes);
-    this.joints = scene.joints.map((_, index) => this.addJoint(symbols, index));
-    this.root.traverse((object) => {
-      if (object.isMesh) this.triangles += object.geometry.attributes.position.count / 3;
-    });
+    this.symbols = new JointSymbols(shapes);
+    this.made = new Map();    // by the name of a link or joint: what it is drawn by, as text
+    this.meshes = new Map();  // by the name of a part
+    this.parts = [];          // the meshes, to be picked; userData {kind, index, link}
+    this.links = scene.links.map(() => new THREE.Group());
+    for (const node of this.links) this.root.add(node);
+    this.rebuild();
   }
 
-  addLink(link, index) {
-    const node = new THREE.Group();
-    this.root.add(node);
-    const geometry = this.shapes.geometryOf(index);
-    if (geometry) {
-      const colour = linkColour(this.scene, index);
-      node.add(this.addPart(geometry, colour, {kind: "link", index: index, link: index}));
+  get triangles() {
+    return this.parts.reduce((n, mesh) => n + mesh.geometry.attributes.position.count / 3, 0);
+  }
+
+  // Draws those links and joints whose numbers have changed since they were drawn.
+  rebuild() {
+    this.scene.links.forEach((_, index) => this.drawLink(index));
+    this.scene.joints.forEach((_, index) => this.drawJoint(index));
+    this.parts = Array.from(this.meshes.values());
+  }
+
+  isNew(name, inputs) {
+    const text = JSON.stringify(inputs), is = this.made.get(name) !== text;
+    this.made.set(name, text);
+    return is;
+  }
+
+  drawLink(index) {
+    const name = "link " + index;
+    if (!this.isNew(name, this.shapes.inputsOf(index))) return;
+    this.put(name, this.shapes.geometryOf(index), linkColour(this.scene, index),
+        {kind: "link", index: index, link: index});
+  }
+
+  drawJoint(index) {
+    const joint = this.scene.joints[index], name = "joint " + index;
+    if (!this.isNew(name, this.symbols.inputsOf(index))) return;
+    const solids = this.symbols.solidsOf(index);
+    const draw = (part, link, colour) => this.put(name + part,
+        solids[part].empty ? null : solids[part].geometry(), colour, {kind: "joint", index, link});
+    draw("first", joint.first.link, linkColour(this.scene, joint.first.link));
+    draw("second", joint.second.link, linkColour(this.scene, joint.second.link));
+    draw("steel", joint.first.link, kSteelColour);
+  }
+
+  // A part gets a geometry, which the renderer forgets with the next one; null: nothing to draw.
+  put(name, geometry, colour, userData) {
+    const mesh = this.meshes.get(name);
+    if (mesh) mesh.geometry.dispose();
+    if (mesh && geometry) {
+      mesh.geometry = geometry;
+    } else if (geometry) {
+      this.meshes.set(name, this.makePart(geometry, colour, userData));
+    } else if (mesh) {
+      mesh.material.dispose();
+      mesh.parent.remove(mesh);
+      this.meshes.delete(name);
     }
-    return node;
   }
 
-  addJoint(symbols, index) {
-    const joint = this.scene.joints[index], solids = symbols.solidsOf(index), meshes = [];
-    const add = (solid, link, colour) => {
-      if (solid.empty) return;
-      const mesh = this.addPart(solid.geometry(), colour, {kind: "joint", index, link});
-      this.links[link].add(mesh);
-      meshes.push(mesh);
-    };
-    add(solids.first, joint.first.link, linkColour(this.scene, joint.first.link));
-    add(solids.second, joint.second.link, linkColour(this.scene, joint.second.link));
-    add(solids.steel, joint.first.link, kSteelColour);
-    return meshes;
-  }
-
-  addPart(geometry, colour, userData) {
+  makePart(geometry, colour, userData) {
     const material = this.plain ? new THREE.MeshLambertMaterial({color: shade(colour)})
         : new THREE.MeshStandardMaterial({color: shade(colour), roughness: 0.62, metalness: 0.05});
     const mesh = new THREE.Mesh(geometry, material);
     mesh.castShadow = mesh.receiveShadow = true;
     mesh.userData = Object.assign({colour: material.color.clone()}, userData);
-    this.parts.push(mesh);
+    this.links[userData.link].add(mesh);
     return mesh;
   }
 
@@ -82,6 +106,7 @@ class MechanismNodes {
       ghost.add(copy);
     });
     ghost.setPoses = (poses) => poseNodes(ghost.children, poses);
+    ghost.dispose = () => material.dispose();
     return ghost;
   }
 }

@@ -10,9 +10,10 @@ class Paths {
     this.work = [0, 0, 0];
   }
 
-  // `point` in the axes of the link.
-  add(link, point, name) {
-    const path = {link, point, name};
+  // `point` in the axes of the link; that of a grasp goes with the grasp.
+  add(link, point, name, grasp) {
+    const path = {link, point, name, grasp};
+    this.locate(path);
     const colour = shade(linkColour(this.view.scene, link));
     path.dot = new THREE.Mesh(new THREE.SphereBufferGeometry(
         0.9 * this.view.shapes.sizes.rod, 16, 12), new THREE.MeshBasicMaterial({color: colour}));
@@ -26,9 +27,33 @@ class Paths {
 
   remove(path) {
     this.root.remove(path.dot, path.line);
-    path.line.geometry.dispose();
+    for (const object of [path.dot, path.line]) {
+      object.geometry.dispose();
+      object.material.dispose();
+    }
     this.paths = this.paths.filter((other) => other !== path);
     this.view.emit("paths");
+  }
+
+  // The mechanism has other numbers: a curve that was recorded is not its curve.
+  rebuild() {
+    for (const path of this.paths) {
+      this.locate(path);
+      if (path.count === undefined) this.startTrail(path);
+    }
+  }
+
+  locate(path) {
+    const grasp = this.view.scene.grasps[path.grasp];
+    if (grasp) path.point = grasp.pose.slice(0, 3);
+  }
+
+  startTrail(path) {
+    this.root.remove(path.line);
+    path.line.geometry.dispose();
+    path.line.material.dispose();
+    path.line = this.trail(path, path.dot.material.color);
+    this.root.add(path.line);
   }
 
   // The curve over the motion as a thin tube.

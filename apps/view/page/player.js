@@ -54,6 +54,14 @@ class Player {
     return this.motion.times[0];
   }
 
+  // The mechanism has other numbers: the recorded motion is that of another.
+  retire() {
+    if (!this.motion) return;
+    this.pause();
+    this.motion = this.view.scene.motion = null;
+    this.view.boxes.player.remove();
+  }
+
   toggle() {
     if (this.playing) this.pause(); else this.play();
   }

@@ -15,6 +15,7 @@ class Session {
     this.echo = 0;              // the newest event that has come back
     this.latencies = [];        // ms from a drag to the frame that shows its effect
     this.received = 0;
+    this.soon = new Map();      // what goes out with the next frame
     this.connect();
   }
 
@@ -49,15 +50,36 @@ class Session {
     this.socket.send(JSON.stringify(message));
   }
 
+  // Goes out with the next frame; of messages with the same key the newest alone.
+  sendSoon(key, message) {
+    if (!this.soon.size) {
+      this.view.stage.after.push(() => {
+        const messages = Array.from(this.soon.values());
+        this.soon.clear();
+        for (const one of messages) this.send(one);
+      });
+      this.view.stage.ask();
+    }
+    this.soon.set(key, message);
+  }
+
   receive(text) {
     const message = JSON.parse(text);
     if (message.hello) this.greet(message.hello);
     if (message.writer !== undefined) this.become(message.writer ? "writer" : "watching");
+    if (message.scene) this.reshape(message.scene);
     if (message.state) this.show(message.state);
+    if (message.outcome) this.view.emit("outcome", message.outcome);
     if (message.note) this.view.say(message.note);
     if (message.refused) this.view.say(message.refused, true);
     if (message.modes) this.view.emit("modes", message);
     if (message.files) this.view.emit("files", message.files);
+  }
+
+  // From now on the mechanism is not that of a recorded motion.
+  reshape(scene) {
+    this.taken = true;
+    this.view.reshape(scene);
   }
 
   // Another session under the same address shows another mechanism: the page is read anew.

@@ -14,6 +14,12 @@ class Shapes {
   constructor(scene) {
     this.scene = scene;
     this.sizes = sizesOf(scene);
+    this.measure();
+  }
+
+  // What follows from the numbers of the mechanism. Bars keep their thickness when these change.
+  measure() {
+    const {scene} = this;
     this.contacts = scene.links.map((_, link) => contactsOf(scene, link));
     this.layers = layersOf(scene, this.contacts, this.sizes.thick);
     this.up = upOf(scene);
@@ -28,6 +34,13 @@ class Shapes {
 
   layered() {
     return this.layers.some((layer) => layer.layer > 1);
+  }
+
+  // All that the geometry of a link's body is made of.
+  inputsOf(link) {
+    if (this.scene.links[link].mesh) return ["mesh"];
+    return [this.contacts[link], this.layers[link], this.layered(), this.scene.links[link].centre,
+      this.up];
   }
 
   // The geometry of a link's body, or null if joints alone show it.

@@ -5,12 +5,13 @@ const kRim = 3;      // steps of the rounding of an edge
 
 class Solid {
   constructor() {
-    this.positions = [];
+    this.positions = [];  // of triangles put one by one
     this.normals = [];
+    this.pieces = [];     // attributes of geometries put as a whole
   }
 
   get empty() {
-    return this.positions.length === 0;
+    return this.positions.length === 0 && !this.pieces.length;
   }
 
   triangle(a, b, c, na, nb, nc) {
@@ -22,14 +23,13 @@ class Solid {
   add(geometry, matrix) {
     const flat = geometry.index ? geometry.toNonIndexed() : geometry;
     flat.applyMatrix(matrix);
-    for (const value of flat.attributes.position.array) this.positions.push(value);
-    for (const value of flat.attributes.normal.array) this.normals.push(value);
+    this.pieces.push(flat.attributes);
     return this;
   }
 
   sphere(centre, radius) {
-    return this.add(new THREE.SphereBufferGeometry(radius, 24, 16),
-        new THREE.Matrix4().makeTranslation(centre[0], centre[1], centre[2]));
+    return this.add(unitBall().clone(), new THREE.Matrix4().makeScale(radius, radius, radius)
+        .setPosition(centre[0], centre[1], centre[2]));
   }
 
   // The part of a hollow ball within `angle` of the direction.
@@ -103,10 +103,31 @@ class Solid {
 
   geometry() {
     const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute("position", new THREE.Float32BufferAttribute(this.positions, 3));
-    geometry.setAttribute("normal", new THREE.Float32BufferAttribute(this.normals, 3));
+    const add = (name, values) => geometry.setAttribute(name, new THREE.BufferAttribute(
+        joined([values, ...this.pieces.map((piece) => piece[name].array)]), 3));
+    add("position", this.positions);
+    add("normal", this.normals);
     return geometry;
   }
+}
+
+let madeBall = null;
+
+// A ball of radius one, which is made once.
+function unitBall() {
+  madeBall = madeBall || new THREE.SphereBufferGeometry(1, 24, 16).toNonIndexed();
+  return madeBall;
+}
+
+// Lists of numbers one after the other.
+function joined(lists) {
+  const out = new Float32Array(lists.reduce((n, list) => n + list.length, 0));
+  let at = 0;
+  for (const list of lists) {
+    out.set(list, at);
+    at += list.length;
+  }
+  return out;
 }
 
 // A frame with its z axis along a direction.

@@ -68,7 +68,11 @@ class Stage {
     this.floor.matrix.makeBasis(vectorOf(eye.east), vectorOf(eye.north), vectorOf(eye.up))
         .multiply(new THREE.Matrix4().makeTranslation(corner[0], corner[1], low));
     this.shadow.scale.set(2 * half * step, 2 * half * step, 1);
-    if (this.grid) this.floor.remove(this.grid);
+    if (this.grid) {
+      this.floor.remove(this.grid);
+      this.grid.geometry.dispose();
+      this.grid.material.dispose();
+    }
     this.grid = gridLines(half, step);
     this.floor.add(this.grid);
     this.step = step;

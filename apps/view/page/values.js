@@ -23,7 +23,7 @@ class Values {
     if (!picked) this.buildAll();
     else if (picked.kind === "joint") this.buildJoint(scene.joints[picked.index], picked.index);
     else if (picked.kind === "link") this.buildLink(scene.links[picked.index], picked);
-    else this.buildGrasp(scene.grasps[picked.index]);
+    else this.buildGrasp(scene.grasps[picked.index], picked.index);
     this.fill();
   }
 
@@ -102,7 +102,8 @@ class Values {
     const {view} = this, {units} = view.scene, {now} = view, at = 7 * picked.index;
     this.title(link.name, picked.index === view.scene.ground ? "ground" : "link");
     const body = this.table();
-    if (link.mass !== undefined) this.row(body, "mass", "kg", () => link.mass);
+    const mass = () => view.scene.links[picked.index].mass;
+    if (mass() !== undefined) this.row(body, "mass", "kg", mass);
     "xyz".split("").forEach((axis, k) => this.row(body, "origin " + axis, units.length,
         () => now.poses[at + k] / units.metres));
     if (picked.point) {
@@ -113,22 +114,24 @@ class Values {
     }
   }
 
-  buildGrasp(grasp) {
+  buildGrasp(grasp, index) {
     const {view} = this, {units} = view.scene, world = [0, 0, 0];
+    const pose = () => view.scene.grasps[index].pose;
     this.title(grasp.name, "grasp on " + view.scene.links[grasp.link].name);
     const body = this.table();
     "xyz".split("").forEach((axis, k) => this.row(body, axis, units.length,
-        () => place(view.now.poses, 7 * grasp.link, grasp.pose, world)[k] / units.metres));
-    this.pathButton(grasp.link, grasp.pose.slice(0, 3), grasp.name);
+        () => place(view.now.poses, 7 * grasp.link, pose(), world)[k] / units.metres));
+    this.pathButton(grasp.link, pose().slice(0, 3), grasp.name, index);
   }
 
-  pathButton(link, point, name) {
+  // `grasp`: whose point it is, if it is that of one.
+  pathButton(link, point, name, grasp) {
     const {paths} = this.view;
     const same = paths.paths.find((path) => path.link === link &&
         lengthOf(sum(path.point, point, -1)) < 1e-9);
     this.box.append(make("button", {class: "vv-button",
       text: same ? "Remove its path" : "Draw its path", on: {click: () => {
-        if (same) paths.remove(same); else paths.add(link, point, name);
+        if (same) paths.remove(same); else paths.add(link, point, name, grasp);
         this.view.show("paths", true);
         this.rebuild();
       }}}));

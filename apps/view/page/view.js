@@ -42,14 +42,14 @@ class View {
     this.paths = new Paths(this);
     this.spring = new Spring(this);
     this.stage.world.add(this.nodes.root, this.forces.root, this.paths.root, this.spring.root);
-    this.swept = sweptPoints(scene, this.nodes);
-    this.stage.surround(this.swept);
+    this.surround();
     this.orbit = new Orbit(this, this.stage.canvas, this.stage.eye);
     this.exports = new Exports(this);
     this.player = new Player(this, boxes.player);
     if (scene.session) this.session = new Session(this, scene.session);
     if (this.session) this.drag = new Drag(this);
     if (this.session) this.livePanel = new LivePanel(this, boxes.live);
+    if (boxes.design) this.design = new Design(this, boxes.design);
     this.tree = new Tree(this, boxes.tree);
     this.values = new Values(this, boxes.values);
     this.plots = new Plots(this, boxes.plots);
@@ -57,9 +57,9 @@ class View {
     this.plots.rebuild();
     this.theme.change = () => { this.stage.tint(); this.plots.rebuild(); };
     for (const [name, on] of Object.entries(this.shown)) this.show(name, on);
-    for (const grasp of scene.grasps) {
-      this.paths.add(grasp.link, grasp.pose.slice(0, 3), grasp.name);
-    }
+    scene.grasps.forEach((grasp, index) => {
+      this.paths.add(grasp.link, grasp.pose.slice(0, 3), grasp.name, index);
+    });
     this.normal = this.findNormal();
     this.lookWell();
     this.moved();
@@ -92,7 +92,14 @@ class View {
     this.fit();
   }
 
+  // Floor and light for where the mechanism reaches.
+  surround() {
+    this.swept = sweptPoints(this.scene, this.nodes);
+    this.stage.surround(this.swept);
+  }
+
   fit() {
+    if (!this.swept) this.surround();
     const covered = Math.min(0.3, kToolsHeight / this.stage.height);
     this.stage.eye.fit(this.swept, 0.1 * this.shapes.sizes.length, covered);
     this.looked();
@@ -106,6 +113,28 @@ class View {
   // The eye has moved.
   looked() {
     this.stage.invalidate();
+  }
+
+  // The mechanism has other numbers: what is drawn by them is drawn anew. The eye, the floor, what is
+  // picked and what is held stay.
+  reshape(fresh) {
+    const {scene} = this;
+    if (!takeNumbers(scene, fresh)) {
+      this.say("The mechanism has other parts now. Open this page anew.", true);
+      return;
+    }
+    this.player.retire();
+    this.compare(null);
+    this.shapes.measure();
+    this.nodes.rebuild();
+    this.marks.rebuild();
+    this.forces.measure();
+    this.paths.rebuild();
+    this.normal = this.findNormal();
+    this.swept = null;  // until somebody wants to see all of it
+    this.light();
+    this.emit("reshaped");
+    this.moved();
   }
 
   // The mechanism has moved.
@@ -215,8 +244,13 @@ class View {
       this.ghost = this.nodes.makeGhost();
       this.stage.world.add(this.ghost);
     }
-    if (this.ghost) this.ghost.visible = Boolean(poses);
-    if (poses) this.ghost.setPoses(poses);
+    if (poses) {
+      this.ghost.setPoses(poses);
+    } else if (this.ghost) {
+      this.stage.world.remove(this.ghost);
+      this.ghost.dispose();
+      this.ghost = null;
+    }
     this.stage.invalidate();
   }
 

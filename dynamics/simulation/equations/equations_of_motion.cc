@@ -277,7 +277,7 @@ double EquationsOfMotion::KineticEnergyHere() const {
 }
 
 double EquationsOfMotion::WeightEnergyHere() const {
-  return WeightEnergy(tree_, now_->motion.ws().inertias);
+  return WeightEnergy(tree_.mechanism.gravity_W, now_->motion.ws().inertias);
 }
 
 }  // namespace vmech
