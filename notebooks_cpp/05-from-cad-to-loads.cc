@@ -101,7 +101,8 @@ int main(int argc, char** argv) {
   // and that the piston slides: `anchor_guide__prismatic`.
   //
   // The solids tell the same story. A shaft that sits in a bore with the axis $a$ keeps some of the
-  // relative twist $[v; \omega]$ of the two parts at zero,
+  // relative twist $[v; \omega]$ of the two parts at zero, $v$ being the velocity of a point on
+  // that axis,
   //
   // $$
   // v \times a = 0, \qquad \omega \times a = 0,
