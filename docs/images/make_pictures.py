@@ -1,5 +1,5 @@
-"""Makes the pictures of the documentation: drawings by `vmech check --draw`, the report and the page
-in the browser, and the moving picture of the README.
+"""Makes the pictures of the documentation: drawings by `vmech check --draw`, the report and the
+page in the browser, and the moving picture of the README.
 make_pictures.py VMECH CHROMIUM CHROMEDRIVER"""
 
 import io
@@ -94,14 +94,14 @@ def moving_picture(browser, folder):
     stage = browser.find_element("css selector", "canvas")
     frames = []
     for k in range(FRAMES):
-        browser.execute_script(MOVE, ".vv-cycle", 0.5 * k / FRAMES)  # of the study's two turns
+        browser.execute_script(MOVE, ".vv-cycle", 0.5 * k / FRAMES)  # one turn of two
         time.sleep(0.15)
         frame = folder / f"frame-{k:02}.png"
         frame.write_bytes(stage.screenshot_as_png)
         frames.append(str(frame))
-    subprocess.run(["convert", "-delay", "6", "-loop", "0", *frames, "-crop", CROP, "+repage", "+dither",
-                    "-colors", str(COLOURS), "-layers", "optimize", str(IMAGES / "view.gif")],
-                   check=True)
+    subprocess.run(["convert", "-delay", "6", "-loop", "0", *frames, "-crop", CROP, "+repage",
+                    "+dither", "-colors", str(COLOURS), "-layers", "optimize",
+                    str(IMAGES / "view.gif")], check=True)
 
 
 def main():
