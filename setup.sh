@@ -79,7 +79,7 @@ run_demo() {
 
 run_tests() {
   install_packages core cad doors tests tools
-  cmake --preset dev -DVMECH_REQUIRE_PACKAGES=ON -DVMECH_PRECOMPILE=ON
+  cmake --preset dev -DVMECH_REQUIRE_PACKAGES=ON -DVMECH_PRECOMPILE=ON -DVMECH_BATCHES=ON
   cmake --build --preset dev
   ctest --preset dev
 }

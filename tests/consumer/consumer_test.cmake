@@ -11,7 +11,7 @@ endif()
 add_test(NAME consumer.install
   COMMAND sh -c "rm -rf ${consumer} && ${CMAKE_COMMAND} --install . --prefix ${consumer}/prefix"
   WORKING_DIRECTORY ${PROJECT_BINARY_DIR})
-set_tests_properties(consumer.install PROPERTIES FIXTURES_SETUP vmech_installation)
+set_tests_properties(consumer.install PROPERTIES FIXTURES_SETUP vmech_installation COST 110)
 
 get_target_property(packages vmech_solver_packages MANUALLY_ADDED_DEPENDENCIES)
 list(JOIN packages " " packages)
@@ -40,7 +40,7 @@ vmech_add_consumer(native ${CMAKE_CURRENT_LIST_DIR} "-O2 -march=native" "${run}"
 # The sanitizer's dlopen looks where the sanitizer's own library says, but for the older RPATH.
 vmech_add_consumer(address_sanitizer ${CMAKE_CURRENT_LIST_DIR}
                    "-O1 -g1 -fsanitize=address -Wl,--disable-new-dtags" "${run}")
-set_tests_properties(consumer.plain PROPERTIES FIXTURES_SETUP layout_of_plain)
+set_tests_properties(consumer.plain PROPERTIES FIXTURES_SETUP layout_of_plain COST 100)
 foreach(name avx2 native address_sanitizer)
   set_tests_properties(consumer.${name} PROPERTIES
     FIXTURES_REQUIRED "vmech_installation;layout_of_plain")

@@ -2,10 +2,9 @@
 
 Usage: clang_tidy.py CLANG_TIDY BUILD_FOLDER
 
-Nine tenths of the time of a source go into the headers of Eigen and the standard library. So
-sources are looked at in batches, as one source that includes them all. Two that give a name of
-their own to different things are not put into one batch; a batch that is not clean is halved until
-it is, or one source is left.
+Sources are looked at in batches (cmake/batches.py), as one source that includes them all. A batch
+that is not clean is halved until it is, or one source is left. Most of the time goes into the
+headers of Eigen and the standard library, once for a batch.
 
 A source that passed is not looked at again until it, a header of the project that it includes, its
 compile command, .clang-tidy or clang-tidy itself changes: BUILD_FOLDER/tidy holds one empty file,
@@ -25,21 +24,17 @@ import sys
 
 from sources import ROOT, relative
 
+sys.path.insert(0, str(ROOT / "cmake"))
+from batches import batches_of
+
 MODULES = ("base", "mechanisms", "solvers", "kinematics", "dynamics", "comparison", "hw_interface",
            "studies", "apps")
-BATCH = 20  # sources; clang-tidy takes about 1 GB for them
+BATCH = 40  # sources; clang-tidy takes 1 GB for 20 of them
 INCLUDE = re.compile(r'^#include "vmech/([^"]+)"', re.MULTILINE)
 # What clang refuses: options of g++, and headers that g++ has precompiled.
 GCC_ALONE = re.compile(r"-m(move|store)-max=\d+|-fpch-preprocess|-Winvalid-pch")
-# What stands between `namespace {` and its end, and the names that are defined there at the left
-# margin.
-HIDDEN = re.compile(r"^namespace \{$(.*?)^\}  // namespace$", re.MULTILINE | re.DOTALL)
-AT_MARGIN = re.compile(r"^(?!//|#|\}|template)\S.*$", re.MULTILINE)
-DEFINED = re.compile(r"^(?:struct|class|enum class) (\w+)"
-                     r"|[\w>&*] ([A-Za-z]\w*)(?:\[.*\])?(?:\(| = |\{|;)"
-                     r"|, ([A-Za-z]\w*) = ", re.MULTILINE)
-ALIAS = re.compile(r"namespace|using")  # clash only if they differ
-MAIN = re.compile(r"^int (main)\(", re.MULTILINE)
+# The sources of a batch that is compiled as one.
+BATCHED = re.compile(r'^#include "(/.+)"$', re.MULTILINE)
 
 
 @dataclasses.dataclass
@@ -47,13 +42,6 @@ class Source:
     path: pathlib.Path
     flags: list
     passed: pathlib.Path  # exists if the source is known to be clean
-
-    def hidden_names(self):
-        """Names of what only this source sees, by which it may clash with others."""
-        text = self.path.read_text()
-        lines = AT_MARGIN.findall("".join(HIDDEN.findall(text)))
-        defined = DEFINED.findall("\n".join(line for line in lines if not ALIAS.match(line)))
-        return {name for names in defined for name in names if name} | set(MAIN.findall(text))
 
 
 def clang_flags(command):
@@ -88,30 +76,22 @@ def fingerprint(path, flags, tidy_version):
     return digest.hexdigest()
 
 
+def sources_of(path):
+    """The sources that are compiled by way of this one: itself, or those of a batch."""
+    if path.parent.name != "Unity":
+        return [path]
+    return [pathlib.Path(included) for included in BATCHED.findall(path.read_text())]
+
+
 def sources_of_modules(build, cache, tidy_version):
     """The sources of the modules in the compile database."""
     sources = {}
     for entry in json.loads((build / "compile_commands.json").read_text()):
-        path = pathlib.Path(entry["file"])
-        if ROOT in path.parents and path.relative_to(ROOT).parts[0] in MODULES:
-            flags = clang_flags(entry["command"])
-            sources[path] = Source(path, flags, cache / fingerprint(path, flags, tidy_version))
+        flags = clang_flags(entry["command"])
+        for path in sources_of(pathlib.Path(entry["file"])):
+            if ROOT in path.parents and path.relative_to(ROOT).parts[0] in MODULES:
+                sources[path] = Source(path, flags, cache / fingerprint(path, flags, tidy_version))
     return [sources[path] for path in sorted(sources)]
-
-
-def batches_of(sources):
-    """Sources in batches of at most BATCH, in which no two define the same name of their own."""
-    batches = []  # pairs of sources and their names
-    for source in sources:
-        names = source.hidden_names()
-        for batch, taken in batches:
-            if len(batch) < BATCH and not names & taken:
-                batch.append(source)
-                taken |= names
-                break
-        else:
-            batches.append(([source], names))
-    return [batch for batch, _ in batches]
 
 
 def run(tidy, path, flags):
@@ -146,7 +126,8 @@ def main():
     if not sources:
         print("the compile database names no source of a module")
         return 1
-    batches = batches_of([source for source in sources if not source.passed.exists()])
+    waiting = {source.path: source for source in sources if not source.passed.exists()}
+    batches = [[waiting[path] for path in batch] for batch in batches_of(waiting, BATCH)]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         checks = [pool.submit(check, tidy, batch, cache / f"batch_{number}.cc")
                   for number, batch in enumerate(batches)]

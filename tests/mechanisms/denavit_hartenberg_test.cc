@@ -9,7 +9,7 @@
 #include "support/examples.h"
 #include "vmech/mechanisms/mass_properties.h"
 
-namespace vmech {
+namespace vmech::denavit_hartenberg_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -239,4 +239,4 @@ TEST(DrawnInLinkFrames, LeavesEveryLinkInItsDhFrame) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::denavit_hartenberg_test

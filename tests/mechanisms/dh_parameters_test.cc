@@ -8,7 +8,7 @@
 
 #include "support/examples.h"
 
-namespace vmech {
+namespace vmech::dh_parameters_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -213,4 +213,4 @@ TEST(DeduceDh, SaysNothingOfACoincidentAxisButItsOwnTurnAndShift) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::dh_parameters_test

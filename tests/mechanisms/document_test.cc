@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vmech {
+namespace vmech::document_test {
 namespace {
 
 /// The message with which a text is refused; empty if it is accepted.
@@ -151,4 +151,4 @@ TEST(Quoted, IsFitForATerminal) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::document_test

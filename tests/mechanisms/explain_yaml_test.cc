@@ -4,7 +4,7 @@
 
 #include "vmech/mechanisms/files/document.h"
 
-namespace vmech {
+namespace vmech::explain_yaml_test {
 namespace {
 
 /// What a document says that is read as a number at its key `b`.
@@ -73,4 +73,4 @@ TEST(ExplainYaml, IsSilentWhereNothingIsKnown) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::explain_yaml_test

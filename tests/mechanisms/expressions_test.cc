@@ -11,7 +11,7 @@
 #include "vmech/mechanisms/expressions/quantity.h"
 #include "vmech/mechanisms/expressions/unit.h"
 
-namespace vmech {
+namespace vmech::expressions_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -147,4 +147,4 @@ TEST(Expressions, CarryExactDerivatives) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::expressions_test

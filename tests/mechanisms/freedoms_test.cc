@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace vmech {
+namespace vmech::freedoms_test {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -52,4 +52,4 @@ TEST(Freedoms, AJointWithOneLendsItItsName) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::freedoms_test

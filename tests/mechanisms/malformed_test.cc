@@ -6,7 +6,7 @@
 #include "slider_crank.h"
 #include "vmech/mechanisms/files/reader.h"
 
-namespace vmech {
+namespace vmech::malformed_test {
 namespace {
 
 /// The slider-crank with one passage replaced, and what must be said about it: the line of the
@@ -225,4 +225,4 @@ TEST(MalformedFiles, OfEveryLengthEndInAnErrorAndNeverInACrash) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::malformed_test

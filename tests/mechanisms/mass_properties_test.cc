@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-namespace vmech {
+namespace vmech::mass_properties_test {
 namespace {
 
 constexpr double kRounding = 1e-14;  // relative: some ten operations on numbers of order one
@@ -78,4 +78,4 @@ TEST(InertiaDefect, FindsWhatNoBodyHas) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::mass_properties_test

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace vmech {
+namespace vmech::mechanism_test {
 namespace {
 
 TEST(AxesFromZX, GivesARightHandedFrameWithTheAskedZ) {
@@ -27,4 +27,4 @@ TEST(Joint, HasOneEntryPerFreedom) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::mechanism_test

@@ -17,7 +17,7 @@
 #include "vmech/mechanisms/files/reader.h"
 #include "vmech/mechanisms/files/writer.h"
 
-namespace vmech {
+namespace vmech::parameters_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -326,4 +326,4 @@ TEST(ExamplesWithParameters, AreTheLinkagesThatTheySay) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::parameters_test

@@ -11,7 +11,7 @@
 #include "vmech/mechanisms/dh/dh_parameters.h"
 #include "vmech/mechanisms/files/reader.h"
 
-namespace vmech {
+namespace vmech::read_dh_test {
 namespace {
 
 constexpr double kRounding = 1e-14;
@@ -126,4 +126,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return info.param.subject; });
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::read_dh_test

@@ -9,7 +9,7 @@
 
 #include "slider_crank.h"
 
-namespace vmech {
+namespace vmech::reader_test {
 namespace {
 
 constexpr double kRounding = 1e-15;  // relative; one or two roundings of the conversion
@@ -223,4 +223,4 @@ TEST(Reader, NamesAMechanismAfterItsFileIfItHasNoName) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::reader_test

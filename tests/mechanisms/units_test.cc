@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-namespace vmech {
+namespace vmech::units_test {
 namespace {
 
 constexpr double kRounding = 4e-16;  // relative: a few roundings in the product of the factors
@@ -90,4 +90,4 @@ TEST(Units, ThatCannotBeReadAreRefused) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::units_test

@@ -13,7 +13,7 @@
 #include "vmech/mechanisms/freedoms.h"
 #include "vmech/mechanisms/mass_properties.h"
 
-namespace vmech {
+namespace vmech::writer_test {
 namespace {
 
 constexpr double kSameBits = 0;
@@ -157,4 +157,4 @@ TEST(Writer, RefusesAFigureThatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::writer_test

@@ -7,7 +7,7 @@
 #include "vmech/dynamics/loads/load_result.h"
 #include "vmech/dynamics/loads/run_load_study.h"
 
-namespace vmech::reference {
+namespace vmech::reference::andrews_squeezer_test {
 namespace {
 
 /// Andrews' squeezing mechanism: problem "andrews" of the CWI/Bari test set for initial value
@@ -139,4 +139,4 @@ TEST_P(AndrewsSqueezer, TheDriveExertsTheTorqueOfTheMotor) {
 INSTANTIATE_TEST_SUITE_P(History, AndrewsSqueezer, testing::ValuesIn(kRows));
 
 }  // namespace
-}  // namespace vmech::reference
+}  // namespace vmech::reference::andrews_squeezer_test

@@ -5,7 +5,7 @@
 #include "vmech/dynamics/loads/load_result.h"
 #include "vmech/dynamics/loads/run_load_study.h"
 
-namespace vmech::reference {
+namespace vmech::reference::bricard_test {
 namespace {
 
 /// Bricard's linkage of six revolutes, benchmark A04 of the IFToMM library of multibody problems:
@@ -63,4 +63,4 @@ TEST(Bricard, FallsAsInTheBenchmark) {
 }
 
 }  // namespace
-}  // namespace vmech::reference
+}  // namespace vmech::reference::bricard_test

@@ -4,7 +4,7 @@
 
 #include "reference_case.h"
 
-namespace vmech::reference {
+namespace vmech::reference::flyball_governor_test {
 namespace {
 
 /// Stiff flyball governor, benchmark A05 of the IFToMM library of multibody problems. The table is
@@ -84,4 +84,4 @@ TEST_P(FlyballGovernor, NeedsNoDriveAlongThem) {
 INSTANTIATE_TEST_SUITE_P(AlongTheMotion, FlyballGovernor, testing::ValuesIn(kRows));
 
 }  // namespace
-}  // namespace vmech::reference
+}  // namespace vmech::reference::flyball_governor_test

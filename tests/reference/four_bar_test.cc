@@ -5,7 +5,7 @@
 
 #include "reference_case.h"
 
-namespace vmech::reference {
+namespace vmech::reference::four_bar_test {
 namespace {
 
 /// Planar four-bar driven at 5 rad/s and 2 rad/s^2: forces by a free-body matrix of the plane,
@@ -228,4 +228,4 @@ TEST_P(FourBar, CouplerAndRockerMoveAsTheTableSays) {
 INSTANTIATE_TEST_SUITE_P(Every30Degrees, FourBar, testing::ValuesIn(kRows));
 
 }  // namespace
-}  // namespace vmech::reference
+}  // namespace vmech::reference::four_bar_test

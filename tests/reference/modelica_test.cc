@@ -5,7 +5,7 @@
 
 #include "reference_case.h"
 
-namespace vmech::reference {
+namespace vmech::reference::modelica_test {
 namespace {
 
 /// PlanarFourbar and Engine1a of the Modelica Standard Library, g = 9.80665 m/s^2. The free motion
@@ -227,4 +227,4 @@ TEST_P(ModelicaEngine, NothingPushesAlongTheCrankshaftAndTheDriveIsIdle) {
 INSTANTIATE_TEST_SUITE_P(AlongTheMotion, ModelicaEngine, testing::ValuesIn(kEngineRows));
 
 }  // namespace
-}  // namespace vmech::reference
+}  // namespace vmech::reference::modelica_test

@@ -6,7 +6,7 @@
 #include "reference_case.h"
 #include "support/windows.h"
 
-namespace vmech::reference {
+namespace vmech::reference::n_window_four_bar_test {
 namespace {
 
 /// N-window four-bar linkage, benchmark A02 of the IFToMM library of multibody problems: 2N + 1
@@ -86,4 +86,4 @@ TEST(NWindowFourBar, ShippedExampleIsTheSameMechanism) {
 }
 
 }  // namespace
-}  // namespace vmech::reference
+}  // namespace vmech::reference::n_window_four_bar_test

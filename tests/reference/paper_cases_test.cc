@@ -7,7 +7,7 @@
 #include "vmech/dynamics/loads/load_result.h"
 #include "vmech/dynamics/loads/pose/paper_joint.h"
 
-namespace vmech::reference {
+namespace vmech::reference::paper_cases_test {
 namespace {
 
 /// Equations (9)-(14) of the paper with numbers; the paper prints none. Computed in the plane from
@@ -156,4 +156,4 @@ TEST_P(FourBarInHand, Equation14WithForcesAloneIsTheSmallestOfItsSolutions) {
 INSTANTIATE_TEST_SUITE_P(RoundTheTurn, FourBarInHand, testing::ValuesIn(kRows));
 
 }  // namespace
-}  // namespace vmech::reference
+}  // namespace vmech::reference::paper_cases_test

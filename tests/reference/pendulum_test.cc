@@ -4,7 +4,7 @@
 
 #include "reference_case.h"
 
-namespace vmech::reference {
+namespace vmech::reference::pendulum_test {
 namespace {
 
 /// Simple pendulum, benchmark A01 of the IFToMM library of multibody problems: 1 kg at 1 m, let go
@@ -55,4 +55,4 @@ TEST_P(SimplePendulum, PinForceIsThatOfTheFreeSwing) {
 INSTANTIATE_TEST_SUITE_P(AlongTheSwing, SimplePendulum, testing::ValuesIn(kRows));
 
 }  // namespace
-}  // namespace vmech::reference
+}  // namespace vmech::reference::pendulum_test

@@ -8,7 +8,7 @@
 #include "vmech/dynamics/loads/load_result.h"
 #include "vmech/dynamics/loads/run_load_study.h"
 
-namespace vmech::reference {
+namespace vmech::reference::slider_crank_test {
 namespace {
 
 constexpr double kExact = 1e-12;  // published as exact surds; only rounding is left
@@ -111,4 +111,4 @@ TEST_P(SundialsSliderCrank, CrankPinForceOfTheFreeMotionIsTheMultiplier) {
 INSTANTIATE_TEST_SUITE_P(AlongTheMotion, SundialsSliderCrank, testing::ValuesIn(kRows));
 
 }  // namespace
-}  // namespace vmech::reference
+}  // namespace vmech::reference::slider_crank_test

@@ -5,7 +5,7 @@
 
 #include "reference_case.h"
 
-namespace vmech::reference {
+namespace vmech::reference::spatial_linkages_test {
 namespace {
 
 constexpr double kTolerance =
@@ -142,4 +142,4 @@ TEST(Rccc, SlidesAsNewtonsMethodOnTheClosureSays) {
 }
 
 }  // namespace
-}  // namespace vmech::reference
+}  // namespace vmech::reference::spatial_linkages_test

@@ -5,7 +5,7 @@
 #include "vmech/dynamics/loads/load_result.h"
 #include "vmech/dynamics/loads/run_load_study.h"
 
-namespace vmech::reference {
+namespace vmech::reference::square_four_bar_test {
 namespace {
 
 /// Square four-bar in space, at rest and let go: geometry of fourBarMechanism3D.py of EXUDYN. Which
@@ -53,4 +53,4 @@ TEST_F(SquareFourBar, ForceInThePlaneAndMomentAboutThePinAreCertainOnly) {
 }
 
 }  // namespace
-}  // namespace vmech::reference
+}  // namespace vmech::reference::square_four_bar_test

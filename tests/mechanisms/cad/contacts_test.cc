@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vmech {
+namespace vmech::contacts_test {
 namespace {
 
 constexpr double kRoundoff = 1e-12;
@@ -233,4 +233,4 @@ TEST(Contacts, OptionsOutOfRangeAreRefused) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::contacts_test

@@ -7,7 +7,7 @@
 #include "vmech/mechanisms/cad/mechanism_from_cad.h"
 #include "vmech/mechanisms/files/document.h"
 
-namespace vmech {
+namespace vmech::fasteners_test {
 namespace {
 
 const Vector3d kZ{0, 0, 1};
@@ -278,4 +278,4 @@ TEST(Fasteners, SaysWhatCannotBeJoined) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::fasteners_test

@@ -13,7 +13,7 @@
 #include "vmech/mechanisms/cad/mechanism_from_cad.h"
 #include "vmech/mechanisms/cad/step/step_reader.h"
 
-namespace vmech {
+namespace vmech::found_joints_test {
 namespace {
 
 using samples::StepWriter;
@@ -206,4 +206,4 @@ TEST(Linkage, TellsShaftsThatMissByALittle) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::found_joints_test

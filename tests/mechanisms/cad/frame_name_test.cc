@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vmech {
+namespace vmech::frame_name_test {
 namespace {
 
 using Role = FrameName::Role;
@@ -60,4 +60,4 @@ TEST(FrameName, NamesTheTypesThatThereAre) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::frame_name_test

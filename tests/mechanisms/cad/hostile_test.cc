@@ -18,7 +18,7 @@
 #include "vmech/mechanisms/cad/step/step_reader.h"
 #include "vmech/mechanisms/files/document.h"
 
-namespace vmech {
+namespace vmech::hostile_test {
 namespace {
 
 using samples::At;
@@ -261,4 +261,4 @@ INSTANTIATE_TEST_SUITE_P(Files, HostileFile, testing::Range(0, static_cast<int>(
                          [](const auto& info) { return Files()[info.param].name; });
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::hostile_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vmech {
+namespace vmech::joint_fit_test {
 namespace {
 
 constexpr double kRoundoff = 1e-14;
@@ -52,4 +52,4 @@ TEST(JointFit, MeasuresWhatTheJointDoesNotAllow) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::joint_fit_test

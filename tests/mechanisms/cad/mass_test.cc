@@ -8,7 +8,7 @@
 #include "support/temp_folder.h"
 #include "vmech/mechanisms/cad/step/step_reader.h"
 
-namespace vmech {
+namespace vmech::mass_test {
 namespace {
 
 using samples::At;
@@ -107,4 +107,4 @@ INSTANTIATE_TEST_SUITE_P(Solids, EverySolid,
                                          SphereSegment, LBracket));
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::mass_test

@@ -4,7 +4,7 @@
 
 #include "vmech/mechanisms/files/document.h"
 
-namespace vmech {
+namespace vmech::mechanism_from_cad_test {
 namespace {
 
 constexpr double kRoundoff = 1e-12;
@@ -208,4 +208,4 @@ TEST(MechanismFromCad, OverlooksDefectsOfTheGround) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::mechanism_from_cad_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vmech {
+namespace vmech::part_name_test {
 namespace {
 
 TEST(CleanName, KeepsLettersBeyondAsciiWhereverTheyStand) {
@@ -44,4 +44,4 @@ TEST(CleanName, CutsBetweenCharacters) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::part_name_test

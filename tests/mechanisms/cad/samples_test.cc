@@ -16,7 +16,7 @@
 #include "vmech/mechanisms/cad/step/step_reader.h"
 #include "vmech/mechanisms/files/reader.h"
 
-namespace vmech {
+namespace vmech::samples_test {
 namespace {
 
 using samples::StepWriter;
@@ -220,4 +220,4 @@ TEST(CadSamples, SliderCrankHasTheJointLoadsOfTheOneWrittenByHand) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::samples_test

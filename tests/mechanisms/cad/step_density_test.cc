@@ -11,7 +11,7 @@
 #include "vmech/mechanisms/cad/step/step_reader.h"
 #include "vmech/mechanisms/files/document.h"
 
-namespace vmech {
+namespace vmech::step_density_test {
 namespace {
 
 using samples::Box;
@@ -241,4 +241,4 @@ TEST(StepNames, ComeThroughInEveryEncoding) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::step_density_test

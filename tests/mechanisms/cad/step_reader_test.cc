@@ -5,7 +5,7 @@
 #include "samples.h"
 #include "support/temp_folder.h"
 
-namespace vmech {
+namespace vmech::step_reader_test {
 namespace {
 
 using samples::At;
@@ -151,4 +151,4 @@ TEST(StepReader, MakesMeshesThatEncloseTheVolume) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::step_reader_test

@@ -9,7 +9,7 @@
 #include "vmech/mechanisms/exchange/urdf/urdf.h"
 #include "vmech/mechanisms/files/document.h"
 
-namespace vmech {
+namespace vmech::hostile_test {
 namespace {
 
 /// A file that must be refused, and what must be in the message; beginning with the place.
@@ -313,4 +313,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return info.param.subject; });
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::hostile_test

@@ -7,7 +7,7 @@
 #include "support/examples.h"
 #include "vmech/mechanisms/mass_properties.h"
 
-namespace vmech {
+namespace vmech::mended_inertia_test {
 namespace {
 
 constexpr double kRounding = 1e-14;  // of figures of order one
@@ -90,4 +90,4 @@ TEST(MendInertia, LeavesPointsAndRodsAndRoundedFiguresAlone) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::mended_inertia_test

@@ -10,7 +10,7 @@
 #include "vmech/mechanisms/files/document.h"
 #include "vmech/mechanisms/mass_properties.h"
 
-namespace vmech {
+namespace vmech::robots_test {
 namespace {
 
 constexpr double kRounding = 1e-15;
@@ -235,4 +235,4 @@ TEST(Robots, TurnByRollPitchAndYawAboutFixedAxes) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::robots_test

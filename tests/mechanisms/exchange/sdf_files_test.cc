@@ -10,7 +10,7 @@
 #include "vmech/mechanisms/exchange/start_pose.h"
 #include "vmech/mechanisms/files/document.h"
 
-namespace vmech {
+namespace vmech::sdf_files_test {
 namespace {
 
 constexpr double kRounding = 1e-14;
@@ -232,4 +232,4 @@ TEST_F(SdfFiles, KeepTheLinesOfTheirFaultsThere) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::sdf_files_test

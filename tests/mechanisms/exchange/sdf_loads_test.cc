@@ -12,7 +12,7 @@
 #include "vmech/mechanisms/exchange/sdf/sdf.h"
 #include "vmech/mechanisms/freedoms.h"
 
-namespace vmech {
+namespace vmech::sdf_loads_test {
 namespace {
 
 constexpr double kSameLoads = 1e-9;  // of the largest load: poses written with 16 digits
@@ -94,4 +94,4 @@ INSTANTIATE_TEST_SUITE_P(All, LoadsThroughSdf, testing::ValuesIn(DrivenExamples(
                          [](const auto& info) { return TestName(info.param.name); });
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::sdf_loads_test

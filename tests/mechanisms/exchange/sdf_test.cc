@@ -14,7 +14,7 @@
 #include "vmech/mechanisms/files/document.h"
 #include "vmech/mechanisms/mass_properties.h"
 
-namespace vmech {
+namespace vmech::sdf_test {
 namespace {
 
 constexpr double kSixteenDigits = 1e-14;  // poses of order one as decimals and quaternions
@@ -314,4 +314,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return info.param.subject; });
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::sdf_test

@@ -10,7 +10,7 @@
 #include "vmech/mechanisms/exchange/start_pose.h"
 #include "vmech/mechanisms/files/document.h"
 
-namespace vmech {
+namespace vmech::urdf_test {
 namespace {
 
 constexpr double kRounding = 1e-15;
@@ -207,4 +207,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return info.param.subject; });
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::urdf_test

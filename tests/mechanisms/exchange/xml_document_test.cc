@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vmech {
+namespace vmech::xml_document_test {
 namespace {
 
 TEST(Xml, GivesElementsWithTheirLines) {
@@ -51,4 +51,4 @@ TEST(XmlErrors, RefusesWhatIsNoNumber) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::xml_document_test

@@ -1,0 +1,83 @@
+"""Puts sources into batches that can be compiled as one source, which includes them all.
+
+Usage: batches.py SIZE SOURCE...     prints a line `NUMBER SOURCE` for each source of a batch
+
+Much of the time of a source goes into headers and into templates that its neighbours instantiate
+as well; a batch pays for them once. A source that says a name which another defines for itself
+alone, in its unnamed namespace, is not put into the batch of the other, where it could mean either.
+Sources in namespaces side by side (vmech::units_test, vmech::writer_test) do not see each other's
+names. What stands alone is not printed.
+"""
+
+import dataclasses
+import pathlib
+import re
+import sys
+
+# What stands between `namespace {` and its end, and the names that are defined there at the left
+# margin.
+HIDDEN = re.compile(r"^namespace \{$(.*?)^\}  // namespace$", re.MULTILINE | re.DOTALL)
+AT_MARGIN = re.compile(r"^(?!//|#|\}|template)\S.*$", re.MULTILINE)
+DEFINED = re.compile(r"^(?:struct|class|enum class|using) (\w+)"
+                     r"|[\w>&*] ([A-Za-z]\w*)(?:\[.*\])?(?:\(| = |\{|;)"
+                     r"|, ([A-Za-z]\w*)(?: = |\{)", re.MULTILINE)
+ALIAS = re.compile(r"namespace|using (?!\w+ = )")  # of the same in every source
+SCOPE = re.compile(r"^namespace ([\w:]+) \{$", re.MULTILINE)
+SAID = re.compile(r"(?<![.:>])\b(?:[A-Z]|k[A-Z])\w*")  # not members, nor variables
+UNSAID = re.compile(r'//.*|"(?:\\.|[^"\\\n])*"')  # comments and strings
+MAIN = re.compile(r"^int (main)\(", re.MULTILINE)
+
+
+def hidden_names(text):
+    """Names of what only this source sees, by which it may clash with others."""
+    lines = AT_MARGIN.findall("".join(HIDDEN.findall(text)))
+    defined = DEFINED.findall("\n".join(line for line in lines if not ALIAS.match(line)))
+    return {name for names in defined for name in names if name} | set(MAIN.findall(text))
+
+
+@dataclasses.dataclass
+class Source:
+    """A source as its neighbours in a batch meet it."""
+    path: pathlib.Path
+    scope: str  # the namespace of its definitions
+    hidden: set  # names of its own
+    said: set  # names of its own and what else it calls by a name
+
+    def clashes(self, other):
+        """Whether a name of one's own is said in the other, where it is visible."""
+        nested = (f"{self.scope}::".startswith(f"{other.scope}::")
+                  or f"{other.scope}::".startswith(f"{self.scope}::"))
+        return nested and bool(self.hidden & other.said or other.hidden & self.said)
+
+
+def read_source(path):
+    text = path.read_text()
+    scope, hidden = SCOPE.search(text), hidden_names(text)
+    said = set(SAID.findall(UNSAID.sub("", text)))
+    return Source(path, scope[1] if scope else "", hidden, hidden | said)
+
+
+def batches_of(paths, size):
+    """The paths in batches of at most `size`; those with the most clashes are placed first."""
+    sources = [read_source(path) for path in paths]
+    batches = []
+    for source in sorted(sources, key=lambda one: -sum(map(one.clashes, sources))):
+        for batch in batches:
+            if len(batch) < size and not any(map(source.clashes, batch)):
+                batch.append(source)
+                break
+        else:
+            batches.append([source])
+    return [[source.path for source in batch] for batch in batches]
+
+
+def main():
+    paths = [pathlib.Path(path) for path in sys.argv[2:]]
+    batches = [batch for batch in batches_of(paths, int(sys.argv[1])) if len(batch) > 1]
+    for number, batch in enumerate(batches):
+        for path in batch:
+            print(number, path)
+
+
+if __name__ == "__main__":
+    main()
