@@ -27,6 +27,11 @@ double RateOf(const ConstrainedMotion& motion, const FreedomId& at) {
   return motion.ws().loads[at.joint].rate[at.freedom];
 }
 
+double Along(const Vector3d& way, const Vector3d& rate, const SlidingContact& freedoms) {
+  const auto [first, count] = freedoms;
+  return way.segment(first, count).dot(rate.segment(first, count));
+}
+
 double RestitutionAt(const Simulation& simulation, const FreedomId& at) {
   for (const LimitRebound& rebound : simulation.rebounds) {
     const bool same = rebound.at.joint == at.joint && rebound.at.freedom == at.freedom;
@@ -130,8 +135,10 @@ bool Contacts::ComesToRest(const ConstrainedMotion& motion) const {
     const auto [first, count] = friction.freedoms;
     const Vector3d& rate = motion.ws().loads[friction.joint].rate;
     const Vector3d& way = count == 1 ? friction.direction : friction.last;
-    return way.segment(first, count).dot(rate.segment(first, count)) <
-           -rounding * way.segment(first, count).norm();
+    // Rounding may have left it behind its way; then it must go further back.
+    const double from = std::min(0.0, Along(way, friction.last, friction.freedoms));
+    const double size = way.segment(first, count).norm();
+    return Along(way, rate, friction.freedoms) < from - rounding * size;
   });
 }
 
