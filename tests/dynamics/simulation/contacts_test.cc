@@ -71,7 +71,6 @@ struct Fall {
   }
 };
 
-/// Up to flights that are too short to be told from rest.
 void ExpectBouncesOfFall(const SimulationResult& result, const Fall& fall) {
   ASSERT_EQ(result.status, SimulationStatus::kFinished) << result.message;
   double speed = fall.SpeedFrom(fall.start, fall.friction);
@@ -137,11 +136,10 @@ SimulationResult DownToStop(double angle, double coefficient) {
 }
 
 TEST(Contacts, ABlockThatHitsAStopSticksWhereItComesBackToOrRestsOnTheStop) {
-  constexpr double kCoefficient = 0.4;
-  for (const double angle : {std::atan(kCoefficient) - 0.1, std::atan(kCoefficient) + 0.1}) {
-    const SimulationResult result = DownToStop(angle, kCoefficient);
-    const double down = kGravity * (std::sin(angle) - kCoefficient * std::cos(angle));
-    const double up = kGravity * (std::sin(angle) + kCoefficient * std::cos(angle));
+  for (const double angle : {std::atan(0.4) - 0.1, std::atan(0.4) + 0.1}) {
+    const SimulationResult result = DownToStop(angle, 0.4);
+    const double down = kGravity * (std::sin(angle) - 0.4 * std::cos(angle));
+    const double up = kGravity * (std::sin(angle) + 0.4 * std::cos(angle));
     double speed = std::sqrt(9 + 2 * down * 0.5), time = (speed - 3) / down, high = 0;
     std::vector<SimulationEvent> rebounds;
     for (const SimulationEvent& event : result.events) {
@@ -291,6 +289,24 @@ TEST(Contacts, ADoorWithFrictionComesToRestAndStays) {
   EXPECT_NEAR(result.Q(2)[0], 4, 1e-9);
   EXPECT_EQ(result.Q(3)[0], result.Q(2)[0]);
   EXPECT_NEAR(result.energies.back().dissipated, 6, 1e-9);
+}
+
+TEST(Contacts, ATubeWithFrictionInItsTurnSticksThereAndGoesOnShifting) {
+  Simulation simulation;
+  Mechanism& m = simulation.mechanism;
+  m = Block({0, 0, -1});  // 0.01 kg m^2
+  m.joints = {MakeJoint("tube", JointType::kCylindrical, {0, 0}, {1, 0})};
+  m.joints[0].passive[1].coulomb = 0.02;
+  simulation.start_rates = {{{0, 1}, 3}};
+  simulation.times = {0, 2};
+  const SimulationResult result = Simulate(simulation, Tight(1e-12));
+  ASSERT_EQ(result.events.size(), 1U);
+  EXPECT_EQ(result.events[0].kind, Kind::kSticks);
+  EXPECT_NEAR(result.events[0].time, 1.5, 1e-9);
+  const JointSample tube = result.loads.poses.arrays().Joint(1, 0);
+  EXPECT_NEAR(tube.position[0], 2 * kGravity, 1e-9);
+  EXPECT_NEAR(tube.position[1], 3 * 1.5 / 2, 1e-9);
+  EXPECT_EQ(tube.rate[1], 0);
 }
 
 /// Two joints that hold one freedom share it; which of them does what statics leaves open, but not
