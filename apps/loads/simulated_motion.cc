@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "vmech/apps/loads/tables.h"
@@ -21,7 +23,8 @@ namespace fs = std::filesystem;
 struct MotionSummary {
   std::string mechanism, digest, motion;
   std::string unfinished;
-  int poses = 0;
+  size_t poses = 0;
+  std::vector<size_t> singular_poses;  ///< whose rows hold no numbers
 };
 
 void RequireResults(const fs::path& folder) {
@@ -41,7 +44,11 @@ MotionSummary ReadMotionSummary(const fs::path& path) {
   summary.mechanism = root["mechanism"].Text();
   summary.digest = root["mechanism_sha256"].Text();
   summary.motion = root["motion"].Text();
-  summary.poses = root["poses"].Integer(0, 0, std::numeric_limits<int>::max());
+  constexpr int kMost = std::numeric_limits<int>::max();
+  summary.poses = static_cast<size_t>(root["poses"].Integer(0, 0, kMost));
+  for (const Node& pose : root["singular_poses"].List()) {
+    summary.singular_poses.push_back(static_cast<size_t>(pose.Integer(0, 0, kMost)));
+  }
   if (!root["mechanism_sha256"]) {
     root.Error(
         "does not say of which mechanism file it is (mechanism_sha256); run the command "
@@ -67,6 +74,44 @@ void RequireSameMechanism(const fs::path& folder, const MotionSummary& summary,
                   "{} as it is now ({}); simulate this one, or give the study of that one",
                   summary.mechanism, summary.digest, file.mechanism_path.string(),
                   DigestOfMechanism(file)));
+}
+
+/// Does a row say nothing but when it is?
+bool IsLeftOut(std::string_view line) {
+  size_t cells = 0;
+  for (size_t comma = line.find(','); comma != line.npos; comma = line.find(',', comma + 1)) {
+    if (line.substr(comma + 1, 3) != "nan") return false;
+    ++cells;
+  }
+  return cells > 0;
+}
+
+/// The table with empty lines for the poses at which no loads are determined.
+std::string WithoutSingularPoses(std::string_view text, const std::vector<size_t>& poses) {
+  std::string kept;
+  size_t line = 0;  // the first one has the names
+  for (auto next = poses.begin(); !text.empty(); ++line) {
+    const size_t length = std::min(text.find('\n'), text.size() - 1) + 1;
+    const bool singular = next != poses.end() && line == *next + 1;
+    if (singular) ++next;
+    kept += singular && IsLeftOut(text.substr(0, length)) ? "\n" : text.substr(0, length);
+    text.remove_prefix(length);
+  }
+  return kept;
+}
+
+/// The rows of a table that is whole, but for the poses at which no loads are determined.
+CsvTable ReadRows(const fs::path& path, const std::string& text, const MotionSummary& summary) {
+  if (!text.ends_with('\n')) {
+    throw FileErrors(path.string(), "ends within a row; the file has been cut short");
+  }
+  CsvTable table = ParseCsvTable(WithoutSingularPoses(text, summary.singular_poses), path.string());
+  const size_t rows = table.rows() + summary.singular_poses.size();
+  if (summary.poses == rows) return table;
+  throw FileErrors(path.string(),
+                   fmt::format("has {} rows, but summary.json beside it tells of {} poses; the "
+                               "folder is not whole",
+                               rows, summary.poses));
 }
 
 /// A column for each freedom of each joint.
@@ -130,17 +175,15 @@ std::string TakeMotionOf(const fs::path& folder, StudyFile* file) {
   }
   const fs::path path = folder / "joints.csv";
   const std::string text = ReadTextFile(path, kMaxTableBytes);
-  const CsvTable table = ParseCsvTable(text, path.string());
-  if (static_cast<size_t>(summary.poses) != table.rows()) {
-    throw FileErrors(path.string(),
-                     fmt::format("has {} rows, but summary.json beside it tells of {} poses; the "
-                                 "folder is not whole",
-                                 table.rows(), summary.poses));
-  }
+  const CsvTable table = ReadRows(path, text, summary);
   file->history = HistoryIn(table, file->study.mechanism);
   file->study.times = file->history->times;
   file->study.cycle = 0;
   file->motion = fmt::format("as in {} ({})", folder.string(), summary.motion);
+  if (const size_t singular = summary.singular_poses.size(); singular > 0) {
+    file->motion += fmt::format(", but for {} {} at which the loops are singular", singular,
+                                singular == 1 ? "pose" : "poses");
+  }
   file->inputs.push_back({path, Sha256(text)});
   return summary.unfinished;
 }

@@ -58,17 +58,20 @@ bool LeapOverSingularPose(double end, EquationsOfMotion* equations, double* time
 
 double FastestDecay(double time, const VectorXd& y, EquationsOfMotion* equations) {
   constexpr int kIterations = 20;
-  constexpr double kMove = 1e-7, kNearlyReal = 0.2;
+  constexpr double kShare = 1e-7, kSlowest = 1e-6, kNearlyReal = 0.2;
   const Eigen::Index moving = y.size() - 2;  // energies do not act on anything
   VectorXd here(y.size()), there(y.size()), moved = y;
   if (!equations->Slopes(time, y.data(), here.data())) return 0;
+  // Friction of several freedoms turns with their rates: a move is small beside these.
+  const double speed = equations->motion().ws().v.cwiseAbs().maxCoeff();
+  const double move = kShare * std::clamp(speed, kSlowest, 1.0);
   VectorXd d = here.head(moving);
   double rate = 0;
   for (int i = 0; i < kIterations && d.norm() > 0; ++i) {
     d.normalize();
-    moved.head(moving) = y.head(moving) + kMove * d;
+    moved.head(moving) = y.head(moving) + move * d;
     if (!equations->Slopes(time, moved.data(), there.data())) return 0;
-    const VectorXd Jd = (there - here).head(moving) / kMove;
+    const VectorXd Jd = (there - here).head(moving) / move;
     rate = d.dot(Jd);
     const bool real = (Jd - rate * d).norm() < kNearlyReal * std::abs(rate);
     if (!real) rate = 0;

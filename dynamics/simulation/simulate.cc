@@ -15,6 +15,7 @@
 #include "vmech/dynamics/simulation/recorder.h"
 #include "vmech/dynamics/simulation/rough_places.h"
 #include "vmech/dynamics/simulation/start_state.h"
+#include "vmech/dynamics/simulation/sudden_events.h"
 #include "vmech/kinematics/loops/loops.h"
 
 namespace vmech {
@@ -48,6 +49,9 @@ class Run {
         statistics_(result->statistics),
         equations_(prepared),
         recorder_(prepared, options, &equations_, result),
+        events_(
+            simulation_, &equations_, [this](double time) { return StateAt(time); },
+            &result->events),
         y_(VectorXd::Zero(equations_.size())),
         dense_(y_) {
     problem_.size = equations_.size();
@@ -84,6 +88,12 @@ class Run {
  private:
   double end() const { return simulation_.times.back(); }
 
+  /// Within the last step.
+  const double* StateAt(double time) {
+    integrator_->At(time, dense_.data());
+    return dense_.data();
+  }
+
   void FindStart() {
     time_ = last_look_ = simulation_.times.front();
     const StartState start = FindStartState(prepared_, &equations_);
@@ -91,10 +101,8 @@ class Run {
     const KinematicTree& tree = equations_.tree();
     y_.head(tree.nq) = start.q;
     y_.segment(tree.nq, tree.nv) = start.v;
-    const Contacts before = equations_.contacts();
-    FindContacts();
-    before.Compare(equations_.contacts(), time_, equations_.motion(), &result_.events);
-    LookAround();
+    events_.Start(time_, &y_);
+    events_.LookAround(time_, y_);
   }
 
   /// The problem for IDAS. Its unknowns begin with those of the other methods.
@@ -149,184 +157,29 @@ class Run {
       if (!TryAgain()) Stop(SimulationStatus::kFailed, DescribeFailure(why));
       return;
     }
-    const bool event = GoTo(FirstEvent(from, integrator_->time()), from);
+    const SuddenEvents::Found found = events_.FindFirst(from, integrator_->time());
+    time_ = found.time;
+    integrator_->At(time_, y_.data());
+    if (found.ends_run)
+      Stop(SimulationStatus::kReached, "a coordinate that ends the run is reached");
     RecordUntil(time_);
-    if (event) {
-      PassEvent();
+    if (found.changes) {
+      equations_.Close(time_, y_.data());
+      events_.Pass(time_, &y_);
+      Restart();
     } else {
-      ReturnToLoops();
-      if (!NearSingularPose(equations_, time_ - from)) {
-        ChangeMethodIfStiff();
-      } else {
-        Leap();
-      }
+      GoOnFrom(from);
     }
-    LookAround();
+    events_.LookAround(time_, y_);
   }
 
-  /// To `time` or to the first watch that ends the run. Is it at an event?
-  bool GoTo(double time, double from) {
-    const bool ends = PassWatches(from, &time);
-    const bool event = !ends && time < integrator_->time();
-    time_ = time;
-    integrator_->At(time, y_.data());
-    return event || (!ends && IsEvent(time));
-  }
-
-  // What happens at once.
-
-  void PlaceAt(double time, double* y) {
-    if (y == dense_.data()) integrator_->At(time, y);
-    equations_.Place(time, y, y + equations_.tree().nq);
-  }
-
-  /// Is the state at a time within the last step beyond an event?
-  bool IsEvent(double time) {
-    Contacts& contacts = equations_.contacts();
-    if (contacts.empty()) return false;
-    PlaceAt(time, dense_.data());
-    if (contacts.ComesToRest(equations_.motion())) return true;
-    if (contacts.PassesLimit(equations_.motion())) return true;
-    if (!contacts.any_held()) return false;
-    equations_.Evaluate(time, dense_.data(), dense_.data() + equations_.tree().nq);
-    return contacts.Releases(equations_.motion(), equations_.drives());
-  }
-
-  /// The first time in (from, to] that is beyond an event; `to` if none is.
-  double FirstEvent(double from, double to) {
-    if (equations_.contacts().empty() || !IsEvent(to)) return to;
-    return Bisect(from, to, [this](double time) { return IsEvent(time); });
-  }
-
-  /// The end of the narrowest interval at whose end, but not at whose beginning, `beyond` holds.
-  template <typename Beyond>
-  static double Bisect(double from, double to, const Beyond& beyond) {
-    constexpr double kRounding = 1e-15;
-    while (to - from > kRounding * std::max(std::abs(from), std::abs(to))) {
-      const double middle = from + 0.5 * (to - from);
-      if (middle <= from || middle >= to) break;
-      (beyond(middle) ? to : from) = middle;
+  void GoOnFrom(double begin) {
+    ReturnToLoops();
+    if (NearSingularPose(equations_, time_ - begin)) {
+      Leap();
+    } else {
+      ChangeMethodIfStiff();
     }
-    return to;
-  }
-
-  double Watched(const CoordinateWatch& watch, double time) {
-    PlaceAt(time, dense_.data());
-    return equations_.motion().ws().loads[watch.at.joint].position[watch.at.freedom] - watch.value;
-  }
-
-  /// Enters watches that are reached in (from, *to]. Where one of them ends the run, *to is there.
-  bool PassWatches(double from, double* to) {
-    bool ends = false;
-    for (size_t i = 0; i < simulation_.watches.size(); ++i) {
-      const CoordinateWatch& watch = simulation_.watches[i];
-      const double before = watched_[i];
-      const auto beyond = [&](double time) { return before * Watched(watch, time) <= 0; };
-      if (before == 0 || !beyond(*to)) continue;
-      const double time = Bisect(from, *to, beyond);
-      beyond(time);
-      const JointLoad<double>& joint = equations_.motion().ws().loads[watch.at.joint];
-      result_.events.push_back({time, SimulationEvent::Kind::kReached, watch.at, watch.value,
-                                joint.rate[watch.at.freedom]});
-      if (!watch.ends_run) continue;
-      ends = true;
-      *to = time;
-    }
-    if (!ends) return false;
-    result_.status = SimulationStatus::kReached;
-    result_.message = fmt::format("a coordinate that ends the run is reached at t = {:.6g} s", *to);
-    return true;
-  }
-
-  /// From here the next step is looked at.
-  void LookAround() {
-    if (equations_.contacts().empty() && simulation_.watches.empty()) return;
-    PlaceAt(time_, y_.data());
-    equations_.forces().Remember(equations_.motion());
-    equations_.contacts().Watch(equations_.motion());
-    watched_.clear();
-    for (const CoordinateWatch& watch : simulation_.watches) {
-      const JointLoad<double>& joint = equations_.motion().ws().loads[watch.at.joint];
-      watched_.push_back(joint.position[watch.at.freedom] - watch.value);
-    }
-  }
-
-  void PassEvent() {
-    equations_.Close(time_, y_.data());
-    PlaceAt(time_, y_.data());
-    const Contacts before = equations_.contacts();
-    const std::vector<Contacts::Hit> hits = before.FindHits(equations_.motion());
-    const std::vector<StoppedHit> stopped = Rebound(hits);
-    FindContacts();
-    for (const StoppedHit& hit : stopped) {
-      if (!equations_.contacts().IsClosed(hit.hit)) result_.events.push_back(hit.event);
-    }
-    before.Compare(equations_.contacts(), time_, equations_.motion(), &result_.events);
-    Restart();
-  }
-
-  /// What rests from here on, and what slips or opens at once.
-  void FindContacts() {
-    if (equations_.contacts().empty()) return;
-    PlaceAt(time_, y_.data());
-    equations_.FindContacts(time_, y_.data(), y_.data() + equations_.tree().nq);
-  }
-
-  void TakeRates() {
-    y_.segment(equations_.tree().nq, equations_.tree().nv) = equations_.motion().ws().v;
-  }
-
-  /// A hit that takes all speed: an event of its own where the freedom does not stay at its limit.
-  struct StoppedHit {
-    Contacts::Hit hit;
-    SimulationEvent event;
-  };
-
-  std::vector<StoppedHit> Rebound(std::vector<Contacts::Hit> hits) {
-    std::vector<StoppedHit> stopped;
-    if (hits.empty()) return stopped;
-    const double before = equations_.KineticEnergyHere();
-    const VectorXd v = equations_.motion().ws().v;
-    std::vector<SimulationEvent> rebounds;
-    for (const Contacts::Hit& hit : hits) {
-      const FreedomId at = equations_.contacts().FreedomOf(hit);
-      const JointLoad<double>& joint = equations_.motion().ws().loads[at.joint];
-      rebounds.push_back({time_, SimulationEvent::Kind::kRebound, at, joint.position[at.freedom],
-                          joint.rate[at.freedom]});
-    }
-    equations_.contacts().ReleaseFriction();
-    equations_.Impact(time_, y_.data(), v.data(), hits);
-    TakeRates();
-    if (LetRest(&hits)) {
-      equations_.Impact(time_, y_.data(), v.data(), hits);
-      TakeRates();
-    }
-    for (size_t i = 0; i < hits.size(); ++i) {
-      if (hits[i].rate != 0) {
-        result_.events.push_back(rebounds[i]);
-      } else {
-        stopped.push_back({hits[i], rebounds[i]});
-      }
-    }
-    equations_.HoldContacts();
-    PlaceAt(time_, y_.data());
-    y_[equations_.size() - 1] += before - equations_.KineticEnergyHere();
-    return stopped;
-  }
-
-  /// Freedoms that would be back at their limit within a microsecond stay there. True if any.
-  bool LetRest(std::vector<Contacts::Hit>* hits) {
-    constexpr double kFlight = 1e-6;  // [s]
-    equations_.HoldContacts();
-    equations_.Evaluate(time_, y_.data(), y_.data() + equations_.tree().nq);
-    bool rests = false;
-    for (Contacts::Hit& hit : *hits) {
-      const double pressing = hit.pressing * equations_.motion().SlopeOf(hit.row);
-      if (hit.rate == 0 || !(2 * std::abs(hit.rate) < kFlight * pressing)) continue;
-      hit.rate = 0;
-      rests = true;
-    }
-    return rests;
   }
 
   static std::string DescribeFailure(const std::string& why) {
@@ -353,8 +206,9 @@ class Run {
   /// Onto the loops, and on from there.
   void BringBack() {
     equations_.Close(time_, y_.data());
-    PlaceAt(time_, y_.data());
-    TakeRates();
+    const KinematicTree& tree = equations_.tree();
+    equations_.Place(time_, y_.data(), y_.data() + tree.nq);
+    y_.segment(tree.nq, tree.nv) = equations_.motion().ws().v;
     ++statistics_.projections;
     Restart();
     RecordUntil(time_);
@@ -448,6 +302,7 @@ class Run {
   SimulationStatistics& statistics_;
   EquationsOfMotion equations_;
   Recorder recorder_;
+  SuddenEvents events_;
   InitialValueProblem problem_;
   std::unique_ptr<Integrator> integrator_;
   double time_ = 0;
@@ -457,7 +312,6 @@ class Run {
   long next_look_ = 100, looked_at_ = 0;  ///< steps at which stiffness is, and was, looked at
   double failed_at_ = -1;                 ///< when a step failed last [s]
   double last_look_ = 0;                  ///< when [s]
-  std::vector<double> watched_;           ///< of each watch, how far it was at the last step
 };
 
 }  // namespace

@@ -63,6 +63,13 @@ def rounded(text):
     return [[cell(value) for value in row] for row in csv.reader(text.splitlines())]
 
 
+def with_row(table, pose, cells):
+    """A table whose row of a pose has these cells behind its time."""
+    lines = table.splitlines(keepends=True)
+    lines[pose + 1] = lines[pose + 1].split(",")[0] + f",{cells}\n"
+    return "".join(lines)
+
+
 class Simulate(unittest.TestCase):
     def setUp(self):
         shutil.rmtree(FOLDER, ignore_errors=True)
@@ -147,6 +154,11 @@ class Simulate(unittest.TestCase):
                  "the column 'pivot.rate' is missing"),
                 (lambda: joints.write_text(kept[0].rsplit("\n", 2)[0] + "\n"),
                  "has 20 rows, but summary.json beside it tells of 21 poses"),
+                (lambda: joints.write_text(kept[0][:-3]), "ends within a row"),
+                (lambda: joints.write_text(with_row(kept[0], 9, "nan,nan,nan")),
+                 "pivot.position: expected a finite number, not 'nan'"),
+                (lambda: joints.write_text(kept[0].replace("\n0.3,", "\n0.25,")),
+                 "t must increase from row to row, but 0.25 follows 0.25"),
                 (lambda: summary.write_text(kept[1].replace("mechanism_sha256", "old")),
                  "does not say of which mechanism file it is"),
                 (lambda: self.study("{duration: 1}", start=-1.1),
@@ -167,6 +179,31 @@ class Simulate(unittest.TestCase):
         self.assertEqual(run.returncode, 3, run.stderr)
         self.assertIn("out: a partial motion, of a simulation that is interrupted", run.stderr)
         self.assertTrue((FOLDER / "loads" / "loads.csv").exists())
+
+    def test_poses_without_numbers_are_passed_over_where_the_loops_were_singular(self):
+        study = self.study("{duration: 1, steps: 20}", start=-1)
+        self.assertEqual(self.vmech("simulate", study, "--out", "out").returncode, 0)
+        joints, summary = FOLDER / "out" / "joints.csv", FOLDER / "out" / "summary.json"
+        kept = self.rows("loads.csv")
+        joints.write_text(with_row(joints.read_text(encoding="utf-8"), 9, "nan,nan,nan"))
+        told = json.loads(summary.read_text(encoding="utf-8"))
+        told["singular_poses"] = [8]
+        summary.write_text(json.dumps(told))
+        # Of another row.
+        run = self.run_motion(study, "--motion", "out")
+        self.assertEqual(run.returncode, 2, run.stdout)
+        self.assertIn("expected a finite number, not 'nan'", run.stderr)
+        told["singular_poses"] = [9]
+        summary.write_text(json.dumps(told))
+        run = self.run_motion(study, "--motion", "out")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("but for 1 pose at which the loops are singular", run.stdout)
+        with (FOLDER / "loads" / "loads.csv").open(newline="", encoding="utf-8") as file:
+            loads = list(csv.DictReader(file))
+        self.assertEqual(len(loads), 20)
+        for row, expected in zip(loads, kept[:9] + kept[10:]):
+            for name, value in expected.items():
+                self.assertAlmostEqual(float(row[name]), float(value), delta=1e-9)
 
     def test_a_motor_of_a_load_study_moves_as_a_result_does(self):
         study = self.study("{duration: 1, steps: 20, motors: [{joint: pivot, force: 3}]}", start=-1)

@@ -29,6 +29,7 @@ TESTS = {
     "kinematics": ["kinematics_test", "dynamics_test"],
     "dynamics": ["dynamics_test", "reference_test", "hw_interface_test"],
     "dynamics/bearings": ["dynamics_bearings_test"],
+    "dynamics/simulation": ["simulation_test"],
     "hw_interface": ["hw_interface_test"],
     "comparison": ["comparison_test"],
     "studies": ["apps_test"],

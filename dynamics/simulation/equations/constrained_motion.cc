@@ -10,6 +10,7 @@
 #include "vmech/kinematics/loops/dimensionless_loops.h"
 #include "vmech/kinematics/loops/loops.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
+#include "vmech/mechanisms/freedoms.h"
 
 namespace vmech {
 namespace {
@@ -36,6 +37,13 @@ Eigen::Quaterniond QuaternionAt(const double* wxyz) {
   return {wxyz[0], wxyz[1], wxyz[2], wxyz[3]};
 }
 
+/// 1 rad/s, or a characteristic length a second.
+double UnitOf(const KinematicTree& tree, const RateRow& row) {
+  if (row.v >= 0) return VelocityScale(tree)[row.v];
+  const Joint& joint = tree.mechanism.joints[tree.loops[row.loop].joint];
+  return FreedomsOfType(joint.type).rotates[static_cast<size_t>(row.freedom)] ? 1 : tree.length;
+}
+
 }  // namespace
 
 RateRow RateRowOf(const KinematicTree& tree, FreedomId at) {
@@ -55,9 +63,8 @@ ConstrainedMotion::ConstrainedMotion(const LoadModel& model)
     for (int v = 0; v < nv; ++v) free_[v] = v;
   }
   const VectorXd scale = VelocityScale(tree_);
-  least_inertia_.resize(f);
-  for (int k = 0; k < f; ++k)
-    least_inertia_[k] = model.no_inertia / (scale[free_[k]] * scale[free_[k]]);
+  free_unit_ = scale(free_);
+  least_inertia_ = model.no_inertia * free_unit_.cwiseAbs2().cwiseInverse();
   massless_.resize(f);
   if (open) M_ = MatrixXd::Zero(nv, nv);
   N_ = MatrixXd::Zero(nv, f);
@@ -76,6 +83,8 @@ void ConstrainedMotion::Hold(std::vector<RateRow> rows) {
   B_ = MatrixXd::Zero(m, freedoms());
   Y_ = MatrixXd::Zero(freedoms(), m);
   held_ = multipliers_ = weight_ = VectorXd::Zero(m);
+  row_unit_.resize(m);
+  for (Eigen::Index i = 0; i < m; ++i) row_unit_[i] = UnitOf(tree_, rows_[i]);
   held_factors_ = EnvelopeLdlt<double>(std::vector<int>(rows_.size()));
 }
 
@@ -106,6 +115,17 @@ void ConstrainedMotion::FindInertia() noexcept {
   }
   for (int k = 0; k < freedoms(); ++k) FindMovingLinks(k);
   A_.noalias() = N_.transpose() * MN_;
+  DropRowsThatStand();
+}
+
+/// A rate that stands still while the mechanism moves, as at the turn of a rocker, is held by
+/// nothing: what rounding leaves of its row would stop the mechanism.
+void ConstrainedMotion::DropRowsThatStand() noexcept {
+  constexpr double kStands = 1e-11;
+  for (int i = 0; i < B_.rows(); ++i) {
+    const double moves = B_.row(i).cwiseAbs().dot(free_unit_);
+    if (moves <= kStands * row_unit_[i]) B_.row(i).setZero();
+  }
 }
 
 /// The k-th free motion, its momenta, and the held rates in it.
@@ -202,6 +222,10 @@ void ConstrainedMotion::FindVelocityTerms() noexcept {
 double ConstrainedMotion::SlopeOf(const RateRow& row) const noexcept {
   return row.v >= 0 ? ws_.vdot[row.v]
                     : CutJointAccelerations(tree_, ws_.tree, row.loop)[row.freedom];
+}
+
+double ConstrainedMotion::RateOf(const RateRow& row) const noexcept {
+  return row.v >= 0 ? ws_.v[row.v] : CutJointRates(tree_, ws_.tree, row.loop)[row.freedom];
 }
 
 void ConstrainedMotion::Accelerate(const VectorXd& forces, const double* slopes) noexcept {

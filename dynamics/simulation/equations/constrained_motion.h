@@ -25,7 +25,8 @@ RateRow RateRowOf(const KinematicTree& tree, FreedomId at);
 ///   v'  = a + N s'       (N'M N) s' = N'(forces - h - M a) - B' m,     B s' = held slopes - b a
 ///
 /// with C a + bias = 0 and B = b N. The first is the projection of given velocities in the metric
-/// of M. Redundant loop equations need no care (DependentSolver), nor do redundant rows of B.
+/// of M. Redundant loop equations need no care (DependentSolver), nor do redundant rows of B, nor
+/// rows that no free motion moves, which nothing holds.
 /// Free motions without inertia (below LoadModel::no_inertia) stand still, and so do their
 /// accelerations. Time is linear in the links and loops, times the number of freedoms. Nothing
 /// allocates but the constructor and Hold.
@@ -71,6 +72,8 @@ class ConstrainedMotion {
   const VectorXd& held_slopes() const noexcept { return held_; }
   /// The slope of a rate there.
   double SlopeOf(const RateRow& row) const noexcept;
+  /// A rate at the velocities that there are.
+  double RateOf(const RateRow& row) const noexcept;
 
   /// q, v, v', tree, inertias: as the functions above leave them.
   LoadWorkspace<double>& ws() noexcept { return ws_; }
@@ -80,6 +83,7 @@ class ConstrainedMotion {
   void FindVelocityTerms() noexcept;
   void FindInertia() noexcept;
   void FindMovingLinks(int k) noexcept;
+  void DropRowsThatStand() noexcept;
   void FactorInertia() noexcept;
   void FactorHeld() noexcept;
   void SolveFree(VectorXd* s) noexcept;
@@ -88,6 +92,8 @@ class ConstrainedMotion {
   LoadWorkspace<double> ws_;
   std::vector<int> free_;   ///< the independent velocities
   VectorXd least_inertia_;  ///< of each
+  VectorXd free_unit_;      ///< 1 rad/s, or a characteristic length a second, of each
+  VectorXd row_unit_;       ///< the same of the held rates
   std::vector<bool> massless_;
   MatrixXd M_, N_, MN_, A_;
   EnvelopeLdlt<double> inertia_factors_;  ///< of A, last freedoms first

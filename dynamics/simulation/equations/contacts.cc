@@ -27,6 +27,11 @@ double RateOf(const ConstrainedMotion& motion, const FreedomId& at) {
   return motion.ws().loads[at.joint].rate[at.freedom];
 }
 
+double Along(const Vector3d& way, const Vector3d& rate, const SlidingContact& freedoms) {
+  const auto [first, count] = freedoms;
+  return way.segment(first, count).dot(rate.segment(first, count));
+}
+
 double RestitutionAt(const Simulation& simulation, const FreedomId& at) {
   for (const LimitRebound& rebound : simulation.rebounds) {
     const bool same = rebound.at.joint == at.joint && rebound.at.freedom == at.freedom;
@@ -44,6 +49,17 @@ void RequireInside(const Joint& joint, int freedom) {
       NameOfFreedom(joint, freedom), start, joint.lower[freedom], joint.upper[freedom]));
 }
 
+/// Those freedoms of a contact that friction acts along, under any load: a tube may turn hard and
+/// shift freely.
+SlidingContact FreedomsThatRub(const Joint& joint, const SlidingContact& contact) {
+  const Wrenchd any{Vector3d::Ones(), Vector3d::Ones()};
+  const Vector3d limits = FrictionLimits(joint, any, Vector3d::Zero(), Vector3d::Zero());
+  int first = contact.first, end = contact.first + contact.count;
+  while (first < end && limits[first] == 0) ++first;
+  while (first < end && limits[end - 1] == 0) --end;
+  return {first, end - first};
+}
+
 double LargestRate(const ConstrainedMotion& motion) {
   return motion.ws().v.size() == 0 ? 0 : motion.ws().v.cwiseAbs().maxCoeff();
 }
@@ -54,8 +70,9 @@ Contacts::Contacts(const Simulation& simulation, const KinematicTree& tree) : tr
   const std::vector<Joint>& joints = tree.mechanism.joints;
   for (size_t j = 0; j < joints.size(); ++j) {
     const int joint = static_cast<int>(j);
-    for (const SlidingContact& freedoms : ContactsOf(joints[j].type)) {
-      if (!HasDryFriction(joints[j])) break;
+    for (const SlidingContact& contact : ContactsOf(joints[j].type)) {
+      const SlidingContact freedoms = FreedomsThatRub(joints[j], contact);
+      if (freedoms.count == 0) continue;
       Friction friction{joint, joints[j].type, freedoms, {}};
       for (int k = 0; k < freedoms.count; ++k) {
         friction.rows.push_back(RateRowOf(tree, {joint, freedoms.first + k}));
@@ -130,8 +147,10 @@ bool Contacts::ComesToRest(const ConstrainedMotion& motion) const {
     const auto [first, count] = friction.freedoms;
     const Vector3d& rate = motion.ws().loads[friction.joint].rate;
     const Vector3d& way = count == 1 ? friction.direction : friction.last;
-    return way.segment(first, count).dot(rate.segment(first, count)) <
-           -rounding * way.segment(first, count).norm();
+    // Rounding may have left it behind its way; then it must go further back.
+    const double from = std::min(0.0, Along(way, friction.last, friction.freedoms));
+    const double size = way.segment(first, count).norm();
+    return Along(way, rate, friction.freedoms) < from - rounding * size;
   });
 }
 
@@ -234,7 +253,8 @@ void Contacts::HoldAllAtRest(const ConstrainedMotion& motion) {
   const double slowest = kNoRate * (1 + LargestRate(motion));
   for (Friction& friction : frictions_) {
     const auto [first, count] = friction.freedoms;
-    const Vector3d& rate = motion.ws().loads[friction.joint].rate;
+    Vector3d rate = Vector3d::Zero();
+    rate.segment(first, count) = motion.ws().loads[friction.joint].rate.segment(first, count);
     const Vector3d sliding = SlidingRates(friction.type, rate, slowest, tree_.length);
     friction.rests = sliding.segment(first, count).isZero(0);
     friction.direction.setZero();

@@ -73,9 +73,23 @@ void EquationsOfMotion::FindContacts(double time, const double* q, double* v) {
   do {
     HoldContacts();
     Place(time, q, v);
+    KeepHeldRates(q, v);
     Evaluate(time, q, v);
   } while (contacts_.Release(now_->motion, drives()));
+  HoldContacts();
+  Place(time, q, v);
   std::copy(now_->motion.ws().v.begin(), now_->motion.ws().v.end(), v);
+}
+
+/// What is to come to rest still moves by rounding as it does: whether it can be held is asked
+/// before it is, since holding what turns while the mechanism moves would stop the mechanism.
+void EquationsOfMotion::KeepHeldRates(const double* q, const double* v) {
+  ConstrainedMotion& motion = now_->motion;
+  motion.SetPose(q);
+  motion.TakeVelocities(v);
+  for (size_t k = driven_.size(); k < held_rates_.size(); ++k) {
+    held_rates_[k] = motion.RateOf(motion.held()[k]);
+  }
 }
 
 std::unique_ptr<EquationsOfMotion::Choice> EquationsOfMotion::MakeChoice(const VectorXd& q,

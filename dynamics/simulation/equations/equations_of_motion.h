@@ -92,6 +92,7 @@ class EquationsOfMotion {
 
   std::unique_ptr<Choice> MakeChoice(const VectorXd& q, double tolerance) const;
   void FindDriveMotion(double time);
+  void KeepHeldRates(const double* q, const double* v);
   std::vector<RateRow> HeldRows() const;
   bool AccelerateUnderLoad();
   void SetPose(const double* q);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "simulated.h"
+#include "support/windows.h"
 
 namespace vmech {
 namespace {
@@ -48,6 +49,158 @@ TEST(Contacts, ABouncingPendulumKeepsRestitutionsLawUntilItRests) {
   EXPECT_NEAR(result.Q(60)[0], -1, 1e-9);
   EXPECT_EQ(result.V(60)[0], 0);
   EXPECT_NEAR(result.energies.back().dissipated, kGravity * std::sin(1), 1e-8);
+}
+
+/// A freedom x with constant inertia that falls on a stop under constant friction.
+struct Fall {
+  double inertia = 0, friction = 0, start = 0, stop = 0, restitution = 0;
+  double (*energy)(double x) = nullptr;  ///< of its weight
+
+  /// The speed at the stop of what comes from rest at `x`, or reaches x from the stop.
+  double SpeedFrom(double x, double friction_power) const {
+    const double work = energy(x) - energy(stop) - friction_power * std::abs(x - stop);
+    return std::sqrt(2 * work / inertia);
+  }
+  double Apex(double speed) const {
+    double far = start, near = stop;
+    for (int i = 0; i < 100; ++i) {
+      const double middle = 0.5 * (far + near);
+      (SpeedFrom(middle, -friction) > speed ? far : near) = middle;
+    }
+    return far;
+  }
+};
+
+void ExpectBouncesOfFall(const SimulationResult& result, const Fall& fall) {
+  ASSERT_EQ(result.status, SimulationStatus::kFinished) << result.message;
+  double speed = fall.SpeedFrom(fall.start, fall.friction);
+  double last_time = -1;
+  int bounces = 0;
+  for (const SimulationEvent& event : result.events) {
+    // Of limits that are run into together, those that rounding puts first.
+    if (event.kind != Kind::kRebound || event.time == last_time) continue;
+    last_time = event.time;
+    if (speed > 0.01) EXPECT_NEAR(std::abs(event.rate), speed, 1e-8) << bounces;
+    speed = fall.SpeedFrom(fall.Apex(fall.restitution * speed), fall.friction);
+    ++bounces;
+  }
+  EXPECT_GT(bounces, 8);
+  EXPECT_LT(bounces, 60);
+  const size_t last = result.size() - 1;
+  EXPECT_EQ(result.V(last).norm(), 0);
+  EXPECT_NEAR(PositionIn(result, last, result.tree.mechanism.joints[0].name), fall.stop, 1e-9);
+  EXPECT_NEAR(result.energies[last].dissipated, fall.energy(fall.start) - fall.energy(fall.stop),
+              1e-7);
+  for (size_t i = 1; i <= last; ++i) {
+    EXPECT_GE(result.energies[i].dissipated, result.energies[i - 1].dissipated);
+  }
+  EXPECT_LT(EnergyError(result), 1e-8);
+}
+
+TEST(Contacts, APendulumWithFrictionBouncesToRestOnItsStop) {
+  Simulation simulation = BouncingPendulum(0.6);
+  simulation.mechanism.joints[0].passive[0].coulomb = 1.5;
+  const SimulationResult result = Simulate(simulation, Tight(1e-13));
+  ExpectBouncesOfFall(result,
+                      {1, 1.5, 0, -1, 0.6, [](double x) { return kGravity * std::sin(x); }});
+  // Stop and friction carry the weight between them.
+  EXPECT_NEAR(result.loads.poses[60].joints[0].moment.z(), kGravity * std::cos(1), 1e-9);
+}
+
+/// Two equal cranks, each with its stop: both are run into at once, and either would do.
+TEST(Contacts, AParallelogramWithFrictionBouncesToRestOnTwoStops) {
+  Simulation simulation;
+  simulation.mechanism = Windows(1, 0.3);
+  for (Joint& joint : simulation.mechanism.joints) joint.passive[0].coulomb = 0.4;
+  for (const int crank : {0, 1}) {
+    simulation.mechanism.joints[static_cast<size_t>(crank)].upper = {0.9};
+    simulation.rebounds.push_back({{crank, 0}, 0.5});
+  }
+  simulation.times = Times(3, 30);
+  const SimulationResult result = Simulate(simulation, Tight(1e-13));
+  ExpectBouncesOfFall(result, {5. / 3, 4 * 0.4, 0.3, 0.9, 0.5,
+                               [](double x) { return 2 * kGravity * std::cos(x); }});
+  EXPECT_LT(result.events.size(), 150U);
+  EXPECT_LT(result.Vdot(30).norm(), 1e-9);
+}
+
+SimulationResult DownToStop(double angle, double coefficient) {
+  Simulation simulation;
+  simulation.mechanism = Block({std::cos(angle), 0, -std::sin(angle)});
+  simulation.mechanism.joints[0].load_friction.coefficient = coefficient;
+  simulation.mechanism.joints[0].upper = {0.5};
+  simulation.start_rates = {{{0, 0}, 3}};
+  simulation.rebounds = {{{0, 0}, 0.7}};
+  simulation.times = Times(4, 40);
+  return Simulate(simulation, Tight(1e-13));
+}
+
+TEST(Contacts, ABlockThatHitsAStopSticksWhereItComesBackToOrRestsOnTheStop) {
+  for (const double angle : {std::atan(0.4) - 0.1, std::atan(0.4) + 0.1}) {
+    const SimulationResult result = DownToStop(angle, 0.4);
+    const double down = kGravity * (std::sin(angle) - 0.4 * std::cos(angle));
+    const double up = kGravity * (std::sin(angle) + 0.4 * std::cos(angle));
+    double speed = std::sqrt(9 + 2 * down * 0.5), time = (speed - 3) / down, high = 0;
+    std::vector<SimulationEvent> rebounds;
+    for (const SimulationEvent& event : result.events) {
+      if (event.kind == Kind::kRebound) rebounds.push_back(event);
+    }
+    for (const SimulationEvent& event : rebounds) {
+      if (speed < 0.01) break;
+      EXPECT_NEAR(event.rate, speed, 1e-8);
+      EXPECT_NEAR(event.time, time, 1e-8);
+      const double back = 0.7 * speed;
+      high = back * back / (2 * up);
+      speed = std::sqrt(std::max(0.0, 2 * down * high));
+      time += back / up + (down > 0 ? speed / down : 0);
+    }
+    const bool sticks = down < 0;
+    EXPECT_EQ(rebounds.size() == 1, sticks);
+    EXPECT_LT(rebounds.size(), 60U);
+    EXPECT_NEAR(result.Q(40)[0], sticks ? 0.5 - high : 0.5, 1e-9);
+    EXPECT_EQ(result.V(40)[0], 0);
+    // Along the slope the weight is held, by friction, or by friction and the stop.
+    EXPECT_NEAR(result.loads.poses[40].joints[0].force.z(), -2 * kGravity * std::sin(angle), 1e-8);
+    EXPECT_LT(EnergyError(result), 1e-8);
+  }
+}
+
+/// Friction in the rocker of a crank-rocker, which turns back while all else moves on.
+TEST(Contacts, FrictionTurnsRoundWhereARockerDoes) {
+  Simulation simulation;
+  simulation.mechanism = Example("four-bar");
+  simulation.mechanism.joints[3].passive[0].coulomb = 0.4;
+  simulation.start_rates = {{{0, 0}, 12}};
+  simulation.times = Times(1, 2000);
+  const SimulationResult result = Simulate(simulation, Tight(1e-11));
+  EXPECT_LT(result.statistics.restarts, 20);
+  EXPECT_LT(EnergyError(result), 1e-8);
+  double way = 0;
+  int turns = 0;
+  for (size_t i = 1; i < result.size(); ++i) {
+    way +=
+        std::abs(PositionIn(result, i, "rocker_pivot") - PositionIn(result, i - 1, "rocker_pivot"));
+    const LoadArrays& loads = result.loads.poses.arrays();
+    if (loads.Joint(i, 3).rate[0] * loads.Joint(i - 1, 3).rate[0] < 0) ++turns;
+  }
+  EXPECT_GT(turns, 2);
+  EXPECT_NEAR(result.energies.back().dissipated, 0.4 * way, 1e-5);
+  // A universal joint there has another freedom, which the loop never moves, and friction holds
+  // for ever what nothing moves.
+  Joint& pin = simulation.mechanism.joints[2];
+  const Matrix3d x_on_z = AxesFromZX(Vector3d::UnitY(), Vector3d::UnitZ());
+  for (const AnchorId& id : {pin.first, pin.second}) {
+    Posed& X_LA = simulation.mechanism.links[id.link].anchors[id.anchor].X_LA;
+    X_LA.R = X_LA.R * x_on_z;
+  }
+  const double start = pin.start[0];
+  pin = MakeJoint(pin.name, JointType::kUniversal, pin.first, pin.second);
+  pin.start = {start, 0};
+  pin.passive[0].coulomb = pin.passive[1].coulomb = 0.1;
+  const SimulationResult universal = Simulate(simulation, Tight(1e-11));
+  ASSERT_EQ(universal.status, SimulationStatus::kFinished) << universal.message;
+  EXPECT_LT(EnergyError(universal), 1e-8);
+  EXPECT_GT(universal.energies.back().dissipated, result.energies.back().dissipated + 0.1);
 }
 
 TEST(Contacts, AStopHoldsAndLetsGo) {
@@ -136,6 +289,24 @@ TEST(Contacts, ADoorWithFrictionComesToRestAndStays) {
   EXPECT_NEAR(result.Q(2)[0], 4, 1e-9);
   EXPECT_EQ(result.Q(3)[0], result.Q(2)[0]);
   EXPECT_NEAR(result.energies.back().dissipated, 6, 1e-9);
+}
+
+TEST(Contacts, ATubeWithFrictionInItsTurnSticksThereAndGoesOnShifting) {
+  Simulation simulation;
+  Mechanism& m = simulation.mechanism;
+  m = Block({0, 0, -1});  // 0.01 kg m^2
+  m.joints = {MakeJoint("tube", JointType::kCylindrical, {0, 0}, {1, 0})};
+  m.joints[0].passive[1].coulomb = 0.02;
+  simulation.start_rates = {{{0, 1}, 3}};
+  simulation.times = {0, 2};
+  const SimulationResult result = Simulate(simulation, Tight(1e-12));
+  ASSERT_EQ(result.events.size(), 1U);
+  EXPECT_EQ(result.events[0].kind, Kind::kSticks);
+  EXPECT_NEAR(result.events[0].time, 1.5, 1e-9);
+  const JointSample tube = result.loads.poses.arrays().Joint(1, 0);
+  EXPECT_NEAR(tube.position[0], 2 * kGravity, 1e-9);
+  EXPECT_NEAR(tube.position[1], 3 * 1.5 / 2, 1e-9);
+  EXPECT_EQ(tube.rate[1], 0);
 }
 
 /// Two joints that hold one freedom share it; which of them does what statics leaves open, but not

@@ -210,6 +210,28 @@ Simulation AndrewsSqueezer() {
   return simulation;
 }
 
+Simulation LoadedFourBar() {
+  Simulation simulation;
+  simulation.mechanism = Example("four-bar");
+  Mechanism& m = simulation.mechanism;
+  m.joints[1].passive[0] = {0.8, 0.3, 0.05, 0};
+  m.joints[2].passive[0] = {0, 0, 0.02, 0.1};
+  JointMotor motor;
+  motor.at = {0, 0};
+  motor.force = {{0, 0.3, 1}, {2, -1, 1}, 0};
+  simulation.motors = {motor};
+  ExternalLoad load;
+  load.link = m.joints[1].second.link;
+  load.p_L = {0.05, 0.02, 0};
+  load.over = ExternalLoad::Over::kTime;
+  load.at = {0, 1};
+  load.wrenches = {{{1, -2, 0.5}, {0, 0, 0}}, {{0, 3, 0}, {0.1, 0, 0.2}}};
+  simulation.external = {load};
+  simulation.start_rates = {{{0, 0}, 3}};
+  for (int i = 0; i <= 8; ++i) simulation.times.push_back(0.1 * i);
+  return simulation;
+}
+
 Simulation FallingWindows(int count, const std::vector<double>& times) {
   Simulation simulation;
   simulation.mechanism = Windows(count, 0);

@@ -36,4 +36,7 @@ Simulation AndrewsSqueezer();
 /// N windows that fall from the upright, pushed by 1 rad/s.
 Simulation FallingWindows(int count, const std::vector<double>& times);
 
+/// A four-bar with a motor, a spring, a damper, friction and a force from outside, 0.8 s.
+Simulation LoadedFourBar();
+
 }  // namespace vmech
