@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
   // rank of the loop Jacobian $C = \partial e_2 / \partial q$ knows better:
   //
   // $$
-  // \text{mobility} = n - \rank C = 3 - 2 = 1
+  // \text{mobility} = n - \operatorname{rank} C = 3 - 2 = 1
   // $$
 
   //%%
