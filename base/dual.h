@@ -108,6 +108,7 @@ double Lane(const DualOf<N>& number, int lane) {
 
 }  // namespace vmech
 
+/// @cond
 template <typename N>
 struct Eigen::NumTraits<vmech::DualOf<N>> : Eigen::GenericNumTraits<vmech::DualOf<N>> {
   using Real = vmech::DualOf<N>;
@@ -134,3 +135,4 @@ template <typename N, typename Operation>
 struct Eigen::ScalarBinaryOpTraits<vmech::DualOf<N>, double, Operation> {
   using ReturnType = vmech::DualOf<N>;
 };
+/// @endcond

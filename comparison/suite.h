@@ -46,6 +46,7 @@ struct TargetBlock {
   bool is_path() const { return kind == TargetKind::kTracking || kind == TargetKind::kDeadCentre; }
 };
 
+/// A mechanism of a suite.
 struct SuiteMechanism {
   std::string name;  ///< unique in the suite
   Mechanism mechanism;

@@ -28,6 +28,7 @@ struct Anchor {
   Posed X_LA;  ///< pose in the link's drawing frame
 };
 
+/// A part that moves as one piece.
 struct Link {
   std::string name;
   MassProperties mass_properties;

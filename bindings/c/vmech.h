@@ -103,6 +103,7 @@ enum {
   VMECH_PLANAR = 6, /* along x and y of the first anchor, then about z */
   VMECH_WELD = 7
 };
+/* A joint between anchors of two links. */
 typedef struct vmech_joint {
   size_t struct_size;
   const char* name;
@@ -164,6 +165,7 @@ VMECH_API vmech_status vmech_study_add_load(vmech_study* study, int32_t link, co
 
 /* ---- Results ---- */
 
+/* How a study is run. */
 typedef struct vmech_run_options {
   size_t struct_size;
   int32_t threads; /* 1 to 64; 0 is 1. The result does not depend on it */
@@ -176,6 +178,7 @@ typedef struct vmech_run_options {
  * stops early has VMECH_NO_SOLUTION or VMECH_INTERRUPTED, and what it had computed. */
 VMECH_API vmech_result* vmech_study_run(const vmech_study* study, const vmech_run_options* options);
 
+/* The hand, and who looks for the nearest pose. */
 typedef struct vmech_ik_options {
   size_t struct_size;
   int32_t grasp;
@@ -189,6 +192,7 @@ typedef struct vmech_ik_options {
  * reach is no failure: see the last of these. */
 VMECH_API vmech_result* vmech_ik(const vmech_mechanism* mechanism, const vmech_ik_options* options);
 
+/* What a search for assembly modes holds, and how long it searches. */
 typedef struct vmech_modes_options {
   size_t struct_size;
   const int32_t* held; /* freedoms that stay as they start */
@@ -277,6 +281,7 @@ VMECH_API vmech_status vmech_result_bearings(const vmech_result* result, size_t 
 
 /* ---- A mechanism in a hand, for loops of a kHz ---- */
 
+/* What couples hand and mechanism, and how often. */
 typedef struct vmech_tick_options {
   size_t struct_size;
   int32_t grasp;

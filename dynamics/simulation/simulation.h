@@ -135,6 +135,7 @@ constexpr std::string_view NameOf(SimulationMethod method) {
   return "";
 }
 
+/// How a simulation is integrated, and how exactly.
 struct SimulationOptions {
   SimulationMethod method = SimulationMethod::kAutomatic;
   /// Local error of coordinates and rates, relative, [1e-14, 1e-2]. Chaotic and fast mechanisms

@@ -67,6 +67,7 @@ struct EnergySample {
   double error = 0;
 };
 
+/// What a simulation cost.
 struct SimulationStatistics {
   SimulationMethod method = SimulationMethod::kAdams;  ///< at the end
   long steps = 0;
@@ -90,6 +91,7 @@ struct MovedRate {
   double from = 0, to = 0;  ///< [m/s] or [rad/s]
 };
 
+/// What a simulation came to, in SI units. Shapes stand in square brackets.
 struct SimulationResult {
   SimulationStatus status = SimulationStatus::kNotRun;
   std::string message;  ///< why it stopped, a sentence

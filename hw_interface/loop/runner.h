@@ -16,6 +16,7 @@
 
 namespace vmech {
 
+/// How long a loop runs, and what is kept of it.
 struct RunnerOptions {
   double seconds = 0;   ///< how long to run; 0: until Stop, in [0, 1e6]
   bool record = false;  ///< keep every tick; needs `seconds`

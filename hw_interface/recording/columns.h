@@ -182,6 +182,7 @@ void VisitColumns(const RecordingHeader& header, Visitor* visit, Tick* tick) {
 
 /// What a column holds.
 enum class CellKind { kNumber, kInteger, kFlag, kName };
+/// A column of a recording as text.
 struct Column {
   std::string name;
   CellKind kind;

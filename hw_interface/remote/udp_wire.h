@@ -23,6 +23,7 @@ enum class PacketKind : std::uint16_t {
   kBye = 5,      ///< host -> device: motors off. No payload
 };
 
+/// What every packet between a host and a remote device begins with.
 struct PacketHeader {
   PacketKind kind = PacketKind::kHello;
   std::uint64_t session = 0;           ///< chosen by the host; a packet of another is not for us
@@ -31,6 +32,7 @@ struct PacketHeader {
   std::int64_t reflected_sent_ns = 0;  ///< `sent_ns` of the newest packet from the other side
 };
 
+/// A command to a remote device.
 struct RemoteCommand {
   bool active = false;           ///< the host's master is active
   std::int64_t lifetime_ns = 0;  ///< of the command, from its arrival

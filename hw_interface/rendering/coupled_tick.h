@@ -7,6 +7,7 @@
 
 namespace vmech {
 
+/// What a CoupledTick couples by, and how fast it takes hold and lets go.
 struct CoupledTickOptions {
   /// Spring and damper as the hand feels them (CouplingOf). Stiffer feels truer and calls for a
   /// faster device.

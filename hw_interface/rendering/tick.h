@@ -13,6 +13,7 @@ namespace vmech {
 
 inline constexpr int kMaxChannels = 32;
 
+/// What a tick is given.
 struct TickInput {
   Posed X_WH;             ///< the hand, as measured; not set where an observer knows it
   bool fresh = false;     ///< false: no new sample, the pose is that of the last tick
@@ -37,6 +38,7 @@ enum class TickStatus : std::uint8_t {
   kFailed,  ///< no sound wrench: the loop stops
 };
 
+/// What a tick answers.
 struct TickOutput {
   TickStatus status = TickStatus::kOk;
   Vector6d F_Ho_W = Vector6d::Zero();  ///< what the hand is to feel, about Ho, axes of W

@@ -37,6 +37,7 @@ enum SafetyStage : std::uint32_t {
 };
 inline constexpr int kSafetyStages = 5;
 
+/// What the safety filter lets through to the motors.
 struct SafetyOptions {
   double soft_start = 0.5;  ///< ramp from nothing to the whole wrench [s], in [0, 10]
   /// Count what the soft start withholds as carried by somebody else: for a mechanism that moves by
@@ -66,6 +67,7 @@ struct SafetyInput {
   WrenchLimit room = {};               ///< what the device can exert at this posture
 };
 
+/// What the safety filter made of a wrench.
 struct SafetyOutput {
   std::uint64_t sequence = 0;  ///< that the command must carry, so that an echo tells which it was
   Vector6d F_Ho_D = Vector6d::Zero();

@@ -31,6 +31,7 @@ double DensityFromText(const std::string& text);
 /// Mass properties of a body in its axes L, and where they come from, part by part.
 struct BodyMass {
   MassProperties mass_properties;
+  /// A part's share of the mass of a body.
   struct Part {
     int part = -1;  ///< index in CadAssembly
     std::string name;

@@ -30,6 +30,7 @@ enum class ProgramMethod {
   kMma,    ///< the method of moving asymptotes [Svanberg 2002]
 };
 
+/// How a nonlinear program is solved, and when it counts as solved.
 struct ProgramOptions {
   ProgramMethod method = ProgramMethod::kSlsqp;
   double tolerance = 1e-10;  ///< of f and x, relative

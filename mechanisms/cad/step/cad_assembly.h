@@ -87,6 +87,7 @@ struct CadFrame {
   Posed X_WF;
 };
 
+/// An assembly as a STEP file has it: shapes, parts in groups, named frames. SI units.
 struct CadAssembly {
   std::string file;  ///< for messages
   std::string unit;  ///< of length, as the file names it; empty if it does not

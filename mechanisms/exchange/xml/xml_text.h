@@ -16,9 +16,9 @@ class XmlText {
 
   void Open(std::string_view tag, const Attributes& attributes = {});
   void Close();
-  /// <tag attributes/>
+  /// Writes `<tag attributes/>`.
   void Element(std::string_view tag, const Attributes& attributes);
-  /// <tag attributes>text</tag>
+  /// Writes `<tag attributes>text</tag>`.
   void Text(std::string_view tag, std::string_view text, const Attributes& attributes = {});
   void Comment(std::string_view text);
 
