@@ -27,9 +27,8 @@ namespace {
 constexpr const char* kExitCodes =
     "Exit codes: 0 done; 1 command line; 2 a file is wrong; 3 the loops do not close or the "
     "motion\n"
-    "cannot be followed; 4 done, but no bearing of the catalogue meets the requirements; 5 a "
-    "fault\n"
-    "of vmech.";
+    "cannot be followed; 4 done, but no bearing or design meets the requirements; 5 a defect of "
+    "vmech.";
 
 constexpr const char* kCheckHelp =
     "Says what vmech understands of a mechanism file: links, joints, loops and where they are "
@@ -47,7 +46,7 @@ constexpr const char* kLoadsHelp =
     "  certainty.csv  what statics determines and what it does not\n"
     "  bearings.csv   the bearing chosen at every position\n"
     "  summary.json   the figures that matter, for programs\n"
-    "  report.html    all of it to read and hand on";
+    "  report.html    the whole study as one page, to read and to pass on";
 
 constexpr const char* kSimulateHelp =
     "Lets a mechanism move by its own dynamics, as the block `simulation` of a study says, with\n"
@@ -95,9 +94,10 @@ void AddIk(CLI::App* app, vmech::IkArguments* ik) {
                    "vector) or \"x y z qw qx qy qz\"; without a rotation that of the start; "
                    "REQUIRED")
       ->type_name("NUMBERS");
-  command->add_option("--grasp", question.grasp, "by which it is held (default: the first)")
+  command
+      ->add_option("--grasp", question.grasp, "the grasp by which it is held (default: the first)")
       ->type_name("NAME");
-  command->add_option("--solver", question.solver, "who solves it: " + Solvers())
+  command->add_option("--solver", question.solver, "the solver: " + Solvers())
       ->type_name("NAME")
       ->capture_default_str();
   command
@@ -106,11 +106,11 @@ void AddIk(CLI::App* app, vmech::IkArguments* ik) {
       ->type_name("JOINT=VALUE");
   command
       ->add_option("--stiffness", question.stiffness,
-                   "of the hand along and about x, y, z [N/m, N m/rad] (default: 1 N/m and as "
-                   "much over the characteristic length)")
+                   "stiffness of the hand along and about x, y, z [N/m, N m/rad] (default: 1 "
+                   "N/m and as much over the characteristic length)")
       ->type_name("NUMBERS");
   command->add_flag("--paper-rotation", question.paper_rotation,
-                    "rotation error of the paper (sine) instead of the angle");
+                    "take the rotation error of the paper (sine) instead of the angle");
   command->add_flag("--no-limits", question.no_limits, "ignore the limits of joints");
   vmech::AddSet(command, &question.set);
   vmech::AddTolerance(command, &question.tolerance);
@@ -139,10 +139,11 @@ void AddExport(CLI::App* app, vmech::ExportArguments* arguments) {
 }
 
 constexpr const char* kHapticHelp =
-    "Puts a mechanism into a hand: a loop at the device's rate moves it with the handle and "
-    "returns "
-    "its\n"
-    "weight, its inertia and the pull of what it does not allow. MASTER is the device:\n"
+    "Runs a haptic simulation: a loop at the device's rate moves the mechanism with the handle "
+    "and\n"
+    "makes the device exert its weight, its inertia and the resistance of its joints to motions "
+    "that\n"
+    "they do not allow. MASTER is the device:\n"
     "  simulated       a seven-joint arm and an operator, who follows the study's hand or wanders\n"
     "  haply[:PORT]    an Inverse3 of Haply's behind their Inverse Service\n"
     "  replay:FILE     a recorded hand\n"
@@ -158,20 +159,20 @@ void AddHaptic(CLI::App* app, vmech::HapticArguments* haptic) {
       ->type_name("FILE");
   command
       ->add_option("--grasp", haptic->grasp,
-                   "where it is held (default: the study's, or the first)")
+                   "the grasp by which it is held (default: the study's, or the first)")
       ->type_name("NAME");
   command->add_option("--master", haptic->master, "the device")
       ->type_name("MASTER")
       ->capture_default_str();
   command
       ->add_option("--grip", haptic->grip,
-                   "of the simulated operator: absent, light, relaxed, firm")
+                   "grip of the simulated operator: absent, light, relaxed, firm")
       ->type_name("WORD")
       ->capture_default_str();
-  command->add_option("--rate", haptic->rate, "of the simulated device [Hz]")
+  command->add_option("--rate", haptic->rate, "rate of the simulated device [Hz]")
       ->check(CLI::Range(10.0, 1e5, "10..1e5"))
       ->capture_default_str();
-  command->add_option("--seconds", haptic->seconds, "how long; 0 until Ctrl-C")
+  command->add_option("--seconds", haptic->seconds, "how long [s]; 0: until Ctrl-C")
       ->check(CLI::Range(0.0, 1e6, "0..1e6"))
       ->capture_default_str();
   command
@@ -187,8 +188,8 @@ void AddHaptic(CLI::App* app, vmech::HapticArguments* haptic) {
       ->check(CLI::Range(1e-6, 1.0, "1e-6..1"));
   command
       ->add_option("--stiffness", haptic->stiffness,
-                   "paper: of the constraint [N/m], at most what the device can render (default: "
-                   "that)")
+                   "paper: stiffness of the constraint [N/m] (default, and at most: what the "
+                   "device can render)")
       ->check(CLI::Range(0.0, 1e7, "0..1e7"));
   command
       ->add_option("--inertia", haptic->inertia,
@@ -201,8 +202,8 @@ void AddHaptic(CLI::App* app, vmech::HapticArguments* haptic) {
       ->capture_default_str();
   command
       ->add_option("--estimator", haptic->estimator,
-                   "paper: of velocities and accelerations: observer (knows the arm's own force), "
-                   "kalman, parabola, window or differences (the paper's)")
+                   "paper: source of velocities and accelerations: observer (knows the arm's own "
+                   "force), kalman, parabola, window or differences (the paper's)")
       ->check(CLI::IsMember({"observer", "kalman", "parabola", "window", "differences"}))
       ->capture_default_str();
   command
@@ -212,7 +213,7 @@ void AddHaptic(CLI::App* app, vmech::HapticArguments* haptic) {
       ->check(CLI::IsMember({"workless", "paper"}))
       ->capture_default_str();
   command->add_flag("--gripper", haptic->gripper,
-                    "hold while the device's gripper is closed, the link that is nearest then; the "
+                    "hold only while the device's gripper is closed, by the nearest link; the "
                     "simulated operator lets go for a second now and then");
   vmech::AddWorkspace(command, haptic);
   command->add_flag("--view", haptic->view,
@@ -224,16 +225,17 @@ void AddHaptic(CLI::App* app, vmech::HapticArguments* haptic) {
   command->add_flag("--force", haptic->force, "write over an old recording");
   vmech::AddSet(command, &haptic->set);
   vmech::AddTolerance(command, &haptic->tolerance);
-  command->add_flag("--free", haptic->free_running, "as fast as it computes, in simulated time");
-  command->add_flag("-q,--quiet", haptic->quiet, "print nothing but errors");
+  command->add_flag("--free", haptic->free_running,
+                    "in simulated time, as fast as the machine computes");
+  command->add_flag("-q,--quiet", haptic->quiet, "print errors alone");
 }
 
 constexpr const char* kViewHelp =
-    "Shows a mechanism in the browser, to be looked at and taken in hand: any link can be dragged\n"
-    "with the mouse, joints have sliders, the loads on the joints are read off. The motion of a\n"
-    "study or a result folder of `vmech loads` is played, a recording of `vmech haptic` runs "
-    "again.\n"
-    "The page is on this machine alone (127.0.0.1), at an address that nobody can guess.";
+    "Shows a mechanism in the browser: any link can be dragged with the mouse, joints have "
+    "sliders,\n"
+    "and the load of every joint is shown. The motion of a study or of a result folder is played,\n"
+    "and a recording of `vmech haptic` runs again. The page is served on this machine alone\n"
+    "(127.0.0.1), at an address with a random token.";
 
 void AddView(CLI::App* app, vmech::ViewArguments* view) {
   CLI::App* command = app->add_subcommand("view", kViewHelp);
@@ -245,7 +247,7 @@ void AddView(CLI::App* app, vmech::ViewArguments* view) {
                    "folder with an STL file for every link, as `vmech import --meshes` writes it "
                    "(default: <mechanism>-meshes beside the file)")
       ->type_name("DIR");
-  command->add_option("--port", view->port, "of the page; 0 for any free one")
+  command->add_option("--port", view->port, "port of the page; 0: any free one")
       ->check(CLI::Range(0, 65535, "0..65535"))
       ->capture_default_str();
   vmech::AddSet(command, &view->set);
@@ -261,7 +263,7 @@ constexpr const char* kReplayHelp =
 
 void AddReplay(CLI::App* app, vmech::ReplayArguments* replay) {
   CLI::App* command = app->add_subcommand("replay", kReplayHelp);
-  command->add_option("RECORDING", replay->recording, "of vmech haptic")
+  command->add_option("RECORDING", replay->recording, "a recording of vmech haptic")
       ->required()
       ->type_name("FILE");
   command->add_option("--file", replay->file, "mechanism or study (default: that of the recording)")
@@ -270,17 +272,17 @@ void AddReplay(CLI::App* app, vmech::ReplayArguments* replay) {
       ->type_name("FILE");
   command
       ->add_option("--record", replay->record,
-                   "write the session anew, in the format of today: .mcap, else CSV")
+                   "write the session anew, in the newest format: .mcap, else CSV")
       ->type_name("FILE");
   command->add_flag("--force", replay->force, "write over an old recording");
   command->add_flag("--audit", replay->audit,
                     "compute from the recording alone whether its numbers hold");
   command->add_flag("--view", replay->view,
                     "show it in the browser, at the speed of the recording");
-  command->add_flag("-q,--quiet", replay->quiet, "print nothing but errors");
+  command->add_flag("-q,--quiet", replay->quiet, "print errors alone");
 }
 
-constexpr const char* kStrictHelp = "take warnings for errors: exit code 2";
+constexpr const char* kStrictHelp = "treat warnings as errors: exit code 2";
 
 void AddCheck(CLI::App* app, vmech::CheckArguments* check) {
   CLI::App* command = app->add_subcommand("check", kCheckHelp);
@@ -308,13 +310,13 @@ void AddStudyOptions(CLI::App* command, const char* results, vmech::LoadsArgumen
           "--out", loads->out,
           fmt::format("folder for the results (default: <study>-{} in this folder)", results))
       ->type_name("DIR");
-  command->add_option("--threads", loads->threads, "threads; 0 for all processors")
+  command->add_option("--threads", loads->threads, "number of threads; 0: one per processor")
       ->check(CLI::Range(0, 64, "0..64"))
       ->capture_default_str();
   vmech::AddSet(command, &loads->set);
   vmech::AddTolerance(command, &loads->tolerance);
   command->add_flag("--strict", loads->strict, kStrictHelp);
-  command->add_flag("-q,--quiet", loads->quiet, "print nothing but errors");
+  command->add_flag("-q,--quiet", loads->quiet, "print errors alone");
 }
 
 void AddLoads(CLI::App* app, vmech::LoadsArguments* loads) {
@@ -350,7 +352,7 @@ void AddCompare(CLI::App* app, vmech::CompareArguments* compare) {
   command->add_option("SUITE", compare->suite, "suite file, YAML or JSON")
       ->required()
       ->type_name("FILE");
-  command->add_option("--solvers", compare->solvers, "names, by commas (default: all)")
+  command->add_option("--solvers", compare->solvers, "names of solvers, by commas (default: all)")
       ->delimiter(',')
       ->type_name("NAMES");
   command
@@ -358,10 +360,10 @@ void AddCompare(CLI::App* app, vmech::CompareArguments* compare) {
                    "folder for the results (default: <suite>-compare in this folder)")
       ->type_name("DIR");
   vmech::AddSet(command, &compare->set);
-  command->add_option("--jobs", compare->jobs, "processes; 0 for one per processor")
+  command->add_option("--jobs", compare->jobs, "number of processes; 0: one per processor")
       ->check(CLI::Range(0, 256, "0..256"))
       ->capture_default_str();
-  command->add_flag("-q,--quiet", compare->quiet, "print nothing but errors");
+  command->add_flag("-q,--quiet", compare->quiet, "print errors alone");
 }
 
 /// Everything that the command line can ask for.

@@ -1,7 +1,7 @@
 //%% [markdown]
 // # The four-bar linkage
 //
-// Double4 links, four hinges, one loop: the smallest mechanism that shows what a closed chain is.
+// Four links, four hinges, one loop: the smallest mechanism that shows what a closed chain is.
 // This chapter reads it from a file, finds out how it can move, turns its crank once, and asks what
 // each hinge must carry. Every number is checked where it stands; the chapter fails if one is
 // wrong.
@@ -49,10 +49,13 @@ int main(int argc, char** argv) {
   //%% [markdown]
   // ## How can it move?
   //
-  // Counting says that it cannot. The tree has three freedoms and the cut hinge takes five, so that
-  // Gruebler's count is $3 - 5 = -2$. But the hinges are parallel. Three of the five equations,
-  // those that keep the links in their plane, only repeat what the other hinges say already. The
-  // rank of the loop Jacobian $C = \partial e_2 / \partial q$ knows better:
+  // The planar count that every student knows, $3 (n - 1) - 2 j$ with $n = 4$ links and $j = 4$
+  // hinges, gives 1 and says that the linkage moves. It is right because it takes for granted that
+  // all hinges are parallel. The spatial count takes nothing for granted, and says that the linkage
+  // is stuck: the tree has three freedoms and the cut hinge takes five, so that Gruebler's count is
+  // $3 - 5 = -2$. Three of the five equations, those that keep the links in their plane, only
+  // repeat what the other hinges say already. The rank of the loop Jacobian $C = \partial e_2 /
+  // \partial q$ knows better:
   //
   // $$
   // \text{mobility} = n - \operatorname{rank} C = 3 - 2 = 1
@@ -73,7 +76,9 @@ int main(int argc, char** argv) {
   // ## One turn of the crank
   //
   // The lengths of crank, coupler, rocker and frame are $a = 0.5$, $b = 1.2$, $c = 0.75$ and
-  // $d = 1.1$ m. Grashof's rule holds for them, so that the crank can turn all the way round. It
+  // $d = 1.1$ m. Grashof's rule holds for them: shortest and longest link together, $0.5 + 1.2
+  // = 1.7$ m, are not longer than the other two, $0.75 + 1.1 = 1.85$ m. The shortest link is then
+  // the one that can turn all the way round beside its neighbours, and here it is the crank. It
   // turns once in a second, with 40 N pulling down at the middle of the coupler.
 
   //%%
@@ -232,8 +237,9 @@ int main(int argc, char** argv) {
 
   //%% [markdown]
   // **Energy**: at every pose the power of the motor and of the pull goes into the motion of the
-  // links, to the last digits. And since nothing rubs, the motor gets back over a turn what it
-  // gave: the mean torque is zero.
+  // links, to the last digits. Nothing rubs, and a constant pull of 40 N is conservative, as weight
+  // is: over a closed turn neither takes energy away. So the motor gets back over a turn what it
+  // gave, and at constant speed its mean torque is zero.
 
   //%%
   double sum = 0, peak = 0;

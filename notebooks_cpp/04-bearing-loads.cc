@@ -195,8 +195,9 @@ int main(int argc, char** argv) {
   //
   // Suppose the main bearings are two 6002, 40 mm apart. How stiff that joint is out of the plane,
   // beside the other three, is not well known: it hangs on clearance, preload and housing. The
-  // stiffer it is, the more of the tilting moment it draws to itself. Life goes with the third
-  // power of the load, so that a doubt about the load is a large doubt about the life:
+  // stiffer it is, the more of the tilting moment it draws to itself. The life of a ball bearing
+  // falls with the third power of its load: twice the load leaves an eighth of the life. So a doubt
+  // about the load is a large doubt about the life:
 
   //%%
   const std::vector<Bearing>& catalogue = BuiltInCatalogue();

@@ -97,11 +97,12 @@ int main(int argc, char** argv) {
   //%% [markdown]
   // ## Joints, by name and by geometry
   //
-  // Two parts that both carry a frame `anchor_pin` are joined there. The file says so four times,
-  // and that the piston slides: `anchor_guide__prismatic`.
+  // Two parts that both carry a frame `anchor_pin` are joined there. Four pairs of frames name the
+  // four joints in this way, and the name `anchor_guide__prismatic` says that the piston slides.
   //
   // The solids tell the same story. A shaft that sits in a bore with the axis $a$ keeps some of the
-  // relative twist $[v; \omega]$ of the two parts at zero,
+  // relative twist $[v; \omega]$ of the two parts at zero, $v$ being the velocity of a point on
+  // that axis,
   //
   // $$
   // v \times a = 0, \qquad \omega \times a = 0,
@@ -213,10 +214,17 @@ int main(int argc, char** argv) {
   notebook.Check("both positions are filled", chosen.complete());
 
   //%% [markdown]
-  // On the command line all of this is two lines:
+  // On the command line all of this is two commands. The first one writes a mechanism and a study,
   //
-  //     vmech import mechanisms/cad/samples/slider-crank.step --out crank.yaml --study study.yaml
-  //     --rpm 1500 vmech loads study.yaml
+  // ```
+  // vmech import mechanisms/cad/samples/slider-crank.step --study study.yaml --rpm 1500
+  // ```
+  //
+  // and the second one computes the loads and chooses the bearings:
+  //
+  // ```
+  // vmech loads study.yaml
+  // ```
 
   //%% tags=["remove-cell"]
   return notebook.ExitCode();

@@ -144,7 +144,7 @@ int main(int argc, char** argv) {
   // ## Differentiating an encoder
   //
   // The paper renders inertia from the acceleration, differentiated twice from the encoder. A step
-  // of the encoder, over the period squared, is the noise of that. Double4 ways to do it, with a
+  // of the encoder, over the period squared, is the noise of that. Three ways to do it, with a
   // swing of 0.3 rad at 1.5 Hz:
 
   //%%
@@ -173,9 +173,24 @@ int main(int argc, char** argv) {
   notebook.Check("the Kalman filter leaves less than a third", kalman < 0.33);
 
   //%% [markdown]
-  // Less noise is bought with delay, and a late acceleration turns the rendered inertia against the
-  // device's own: at most half of the handle's mass can be rendered so. The virtual coupling of
-  // chapter 6 has no such bound, because it never asks for an acceleration.
+  // Less noise is bought with delay, and delay costs stability. A mass $M$ that is rendered by the
+  // force $-M a$ on a handle of mass $m$ is a feedback of the handle's own acceleration with the
+  // gain $r = M / m$, and it acts late. How large may $r$ be?
+  //
+  // Take second differences $d_k = x_k - 2 x_{k-1} + x_{k-2}$, the force $F_k = -M d_k / T^2$ held
+  // for a period $T$, and a free handle without damping, $m x'' = F$. Then two neighbouring forces
+  // move the handle by
+  //
+  // $$
+  // d_{k+1} = \frac{T^2}{2 m} (F_k + F_{k-1}) = -\frac{r}{2} (d_k + d_{k-1}),
+  // \qquad z^2 + \frac{r}{2} z + \frac{r}{2} = 0
+  // $$
+  //
+  // The two roots lie within the unit circle exactly if $r < 2$: a free handle can be given less
+  // than twice its own mass in this way. The bound is that of one method and one hand. A filter
+  // with more delay, a delay of the device, or a hand that holds the handle each gives another one;
+  // the table in `docs/haptic.md` has them, measured. The virtual coupling of chapter 6 has no such
+  // bound, because it never asks for an acceleration.
 
   //%% tags=["remove-cell"]
   return notebook.ExitCode();

@@ -12,7 +12,7 @@ constexpr const char* kSensitivitiesHelp =
     "dimensions and masses of its mechanism: exact derivatives, and which matters most. With "
     "--out:\n"
     "  sensitivities.csv  every derivative\n"
-    "  report.html        charts and tables to read and hand on";
+    "  report.html        charts and tables, to read and to pass on";
 
 constexpr const char* kOptimiseHelp =
     "Searches the best design of a study's mechanism within bounds, by exact derivatives:\n"
@@ -21,7 +21,7 @@ constexpr const char* kOptimiseHelp =
     "Parameters and figures are those of vmech sensitivities. With --out:\n"
     "  design.csv      parameters and figures as they were and as they are\n"
     "  mechanism.yaml  the mechanism with the best design\n"
-    "  report.html     all of it to read and hand on, and what would give more";
+    "  report.html     the design as one page, and what would give more";
 
 }  // namespace
 
@@ -51,7 +51,7 @@ void AddSensitivities(CLI::App* app, SensitivityArguments* arguments) {
   command->add_option("--threads", arguments->threads, "0 for one per processor")
       ->check(CLI::Range(0, 64, "0..64"))
       ->capture_default_str();
-  command->add_flag("-q,--quiet", arguments->quiet, "print nothing but errors");
+  command->add_flag("-q,--quiet", arguments->quiet, "print errors alone");
 }
 
 void AddOptimise(CLI::App* app, OptimiseArguments* arguments) {
@@ -91,7 +91,7 @@ void AddOptimise(CLI::App* app, OptimiseArguments* arguments) {
   command->add_option("--threads", arguments->threads, "0 for one per processor")
       ->check(CLI::Range(0, 64, "0..64"))
       ->capture_default_str();
-  command->add_flag("-q,--quiet", arguments->quiet, "print nothing but errors");
+  command->add_flag("-q,--quiet", arguments->quiet, "print errors alone");
 }
 
 }  // namespace vmech

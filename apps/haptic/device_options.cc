@@ -23,7 +23,7 @@ void AddWorkspace(CLI::App* command, HapticArguments* haptic) {
       ->capture_default_str();
   command
       ->add_option("--clutch", haptic->clutch,
-                   "number of the button that, pressed, lets the handle move alone")
+                   "number of the button that lets the handle move alone while it is pressed")
       ->check(CLI::Range(1, 32, "1..32"));
   command
       ->add_option("--handle", haptic->handle,
@@ -33,8 +33,9 @@ void AddWorkspace(CLI::App* command, HapticArguments* haptic) {
       ->delimiter(',')
       ->type_name("FIGURES");
   command
-      ->add_option("--home", haptic->home,
-                   "x,y,z of the device [m]: draw the handle there before it takes hold")
+      ->add_option(
+          "--home", haptic->home,
+          "draw the handle to this place before it takes hold, in the axes of the device [m]")
       ->delimiter(',')
       ->expected(3)
       ->type_name("X,Y,Z");
@@ -43,25 +44,26 @@ void AddWorkspace(CLI::App* command, HapticArguments* haptic) {
 void AddDevice(CLI::App* app, DeviceArguments* device) {
   CLI::App* command = app->add_subcommand("device", kDeviceHelp);
   command->add_option("MASTER", device->master, "the device")->required()->type_name("MASTER");
-  command->add_option("--rate", device->rate, "of the simulated device [Hz]")
+  command->add_option("--rate", device->rate, "rate of the simulated device [Hz]")
       ->check(CLI::Range(10.0, 1e5, "10..1e5"))
       ->capture_default_str();
-  CLI::Option* identify =
-      command->add_flag("--identify", device->identify, "move the handle, and fit what it is");
+  CLI::Option* identify = command->add_flag(
+      "--identify", device->identify,
+      "move the handle gently, and find its mass, damping, dry friction and delay");
   command
       ->add_option("--force", device->force,
-                   "that the handle is moved with [N] (default: a quarter of the peak, at most 2)")
+                   "largest force on the handle [N] (default: a quarter of the peak, at most 2)")
       ->check(CLI::Range(0.01, 100.0, "0.01..100"))
       ->needs(identify);
   command
       ->add_option("--peak-to", device->peak_to,
-                   "seek the peak with short blows that rise to this force [N]")
+                   "find the peak by short blows that rise to this force [N]")
       ->check(CLI::Range(0.01, 1000.0, "0.01..1000"))
       ->needs(identify);
   CLI::Option* serve =
       command
           ->add_option("--serve", device->serve,
-                       "serve it to vmech haptic --master udp:HOST:PORT on another machine; 0 for "
+                       "serve it to vmech haptic --master udp:HOST:PORT on another machine; 0: "
                        "any free port")
           ->check(CLI::Range(0, 65535, "0..65535"))
           ->type_name("PORT")
@@ -74,7 +76,7 @@ void AddDevice(CLI::App* app, DeviceArguments* device) {
       ->capture_default_str()
       ->needs(serve);
   command->add_flag("--free", device->free_running,
-                    "as fast as it computes, in simulated time: for simulated devices");
+                    "in simulated time, as fast as the machine computes: for simulated devices");
 }
 
 }  // namespace vmech

@@ -124,7 +124,7 @@ void AddOutputs(CLI::App* app, ImportArguments* arguments) {
   app->add_option("--meshes", arguments->meshes, "write an STL file for every link, too")
       ->type_name("DIR");
   app->add_flag("--si", arguments->si, "metres and radians instead of millimetres and degrees");
-  app->add_flag("-q,--quiet", arguments->quiet, "print nothing but errors");
+  app->add_flag("-q,--quiet", arguments->quiet, "print errors alone");
 }
 
 void TakeRaw(const Raw& raw, ImportArguments* options) {

@@ -67,7 +67,7 @@ SplineEquations EquationsOfSpline(const std::vector<double>& h, const std::vecto
 }
 
 /// M at the knots; an end that does not rest is not a knot, that is, third derivatives are equal on
-/// either side of the second and last but one knot. Double4 knots or more, or three with an end at
+/// either side of the second and last but one knot. Four knots or more, or three with an end at
 /// rest, or two with both.
 std::vector<double> SplineCurvatures(const std::vector<double>& t, const std::vector<double>& y,
                                      bool rests_before, bool rests_after) {

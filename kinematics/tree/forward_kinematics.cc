@@ -20,7 +20,7 @@ void SinesAndCosines(const KinematicTree& tree, const T* q, TreeWorkspace<T>* ws
   }
 }
 
-/// Double4 at a time, filled up to whole registers.
+/// Four at a time, filled up to whole registers.
 void SinesAndCosines(const KinematicTree& tree, const double* q,
                      TreeWorkspace<double>* ws) noexcept {
   const int* angles = tree.revolute_coordinates.data();
