@@ -37,6 +37,7 @@ template <>
 struct FrameT<double> {
   Double4 x = {1, 0, 0, 0}, y = {0, 1, 0, 0}, z = {0, 0, 1, 0}, p = {0, 0, 0, 0};
 };
+/// A frame of doubles, in registers.
 using Frame = FrameT<double>;
 
 /// A twist: the velocity of what passes the reference point, and the angular velocity. Or a wrench:
@@ -51,6 +52,7 @@ template <>
 struct ScrewT<double> {
   Double4 linear{}, angular{};
 };
+/// A screw of doubles, in registers.
 using Screw = ScrewT<double>;
 
 /// A frame in motion: its pose, and its twist about its own origin.
@@ -74,6 +76,7 @@ struct ScrewInertiaT<double> {
   Double4 moment{};
   Double4 Ix{}, Iy{}, Iz{};
 };
+/// An inertia of doubles, in registers.
 using ScrewInertia = ScrewInertiaT<double>;
 
 }  // namespace vmech

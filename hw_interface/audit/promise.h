@@ -16,6 +16,7 @@ struct SessionPromise {
 
 /// As notes of a recording, and back.
 RecordingNotes NotesOf(const SessionPromise& promise);
+/// What a recording's notes say of it.
 SessionPromise PromiseOf(const RecordingHeader& header);
 
 }  // namespace vmech

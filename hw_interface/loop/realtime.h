@@ -54,6 +54,7 @@ class RealtimeScope {
 
 /// Flush-to-zero and denormals-are-zero for the calling thread; returns the mode before.
 unsigned SetFlushToZero() noexcept;
+/// Back to a mode that SetFlushToZero returned.
 void RestoreFloatingPoint(unsigned mode) noexcept;
 
 }  // namespace vmech

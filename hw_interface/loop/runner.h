@@ -38,6 +38,7 @@ struct RunnerOptions {
   void Validate() const;
 };
 
+/// Why a loop ended.
 enum class RunStatus : std::uint8_t {
   kNotRun,
   kFinished,  ///< the time is over

@@ -48,7 +48,9 @@ struct UdpPacket {
   RemoteCommand command;
 };
 
+/// [bytes]
 inline constexpr std::size_t kLargestPacket = 512;
+/// Room for any packet.
 using PacketBytes = std::array<std::byte, kLargestPacket>;
 
 /// Writes a packet and returns its size. No allocation except for reading the name of kInfo.

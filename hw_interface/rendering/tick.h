@@ -11,6 +11,7 @@
 
 namespace vmech {
 
+/// The most channels that a tick may write.
 inline constexpr int kMaxChannels = 32;
 
 /// What a tick is given.
@@ -32,6 +33,7 @@ struct TickInput {
   const Vector6d* charged_F_Ho_W = nullptr;
 };
 
+/// What came of a tick.
 enum class TickStatus : std::uint8_t {
   kOk,
   kHeld,    ///< no pose was found for this hand; the last good one stays, and the wrench is sound

@@ -35,6 +35,7 @@ enum SafetyStage : std::uint32_t {
   kSlewed = 1u << 3,
   kBraked = 1u << 4,
 };
+/// How many stages there are.
 inline constexpr int kSafetyStages = 5;
 
 /// What the safety filter lets through to the motors.

@@ -20,6 +20,7 @@ enum class TrackStatus {
   kLost,        ///< held: the loops did not close, or values are not finite
 };
 
+/// The status in words.
 std::string_view NameOf(TrackStatus status);
 
 /// How closely a hand is followed, and with how much work a target.

@@ -127,7 +127,9 @@ struct Design {
   template <typename S>
   Design<S> cast() const;
 };
+/// The numbers of a joint.
 Design<double>::JointNumbers NumbersOf(const Joint& joint);
+/// The numbers of a mechanism.
 Design<double> DesignOf(const Mechanism& mechanism);
 
 /// The same as nodes and placements have them: the fields of these names there.
@@ -148,6 +150,7 @@ struct TreeDesign {
   std::vector<NodeNumbers> nodes;
   std::vector<PlacementNumbers> placements;
 };
+/// From the numbers of the mechanism that the tree is of.
 template <typename T>
 TreeDesign<T> DesignOfTree(const KinematicTree& tree, const Design<T>& design);
 /// From the fields of the tree.

@@ -10,6 +10,7 @@
 
 namespace vmech {
 
+/// Of a part whose material nobody names.
 constexpr double kUsualDensity = 7850;  ///< [kg/m^3]: steel
 
 /// Where densities come from, in this order: the user's word for a part, a product, a body or a

@@ -53,6 +53,7 @@ struct DhTable {
   std::vector<int> row_of_grasp;   ///< whose end frame is the grasp
 };
 
+/// The rows of all links, cut joints and grasps of a mechanism, along its tree.
 DhTable DeduceDhTable(const Mechanism& mechanism, const SpanningTree& tree);
 
 /// Poses of the end frames of all rows in the world, from the coordinates of all joints as in

@@ -25,6 +25,7 @@ class NonlinearProgram {
   int constraints_;
 };
 
+/// The algorithms of NLopt that keep inequality constraints by their slopes.
 enum class ProgramMethod {
   kSlsqp,  ///< sequential quadratic programming [Kraft 1994]
   kMma,    ///< the method of moving asymptotes [Svanberg 2002]

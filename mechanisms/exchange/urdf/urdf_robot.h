@@ -18,6 +18,7 @@ struct UrdfLink {
   bool has_inertial = false, has_inertia = false;
 };
 
+/// The types of joints of URDF.
 enum class UrdfJointType { kRevolute, kContinuous, kPrismatic, kPlanar, kFixed, kFloating };
 
 /// A joint as a URDF file has it.

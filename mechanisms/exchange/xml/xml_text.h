@@ -36,6 +36,7 @@ std::string XmlEscaped(std::string_view text);
 
 /// Numbers as the shortest decimals that read back as the same, "1 0.5 -2e-06".
 std::string XmlNumber(double value);
+/// Three of them, with blanks between.
 std::string XmlNumbers(const Vector3d& v);
 
 }  // namespace vmech
