@@ -32,7 +32,7 @@ def calls_in(text):
     """(command, rest of the line) wherever `vmech command` is called; a line may be continued, by a
     backslash or by an indented bracket."""
     joined = re.sub(r"\\\n\s*|\n\s+(?=\[)", " ", text)
-    return re.findall(r"\bvmech ([a-z]+)\b([^`\n|]*)", joined)
+    return re.findall(r"\bvmech ([a-z]+)\b([^`\n]*)", joined)
 
 
 def main():
