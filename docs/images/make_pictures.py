@@ -53,6 +53,16 @@ def picture(browser, path, name, width, height):
     write_small(browser.get_screenshot_as_png(), name)
 
 
+def plot(browser, page, title, name):
+    """The first plot of a page that has this title."""
+    resize(browser, 1000, 1200)
+    browser.get(page.as_uri())
+    time.sleep(1)
+    plots = browser.find_elements("css selector", "svg.plot")
+    titled = [found for found in plots if title in found.text]
+    write_small(titled[0].screenshot_as_png, name)
+
+
 def tutorial(browser, folder):
     files = saved_files(ROOT / "docs" / "tutorial.md")
     first = next(text for name, text in files if name == "shaker.yaml")
@@ -64,7 +74,12 @@ def tutorial(browser, folder):
     run(folder, VMECH, "check", "shaker.yaml", "--draw", "shaker.html")
     picture(browser, folder / "shaker.html", "tutorial-view", 1000, 560)
     run(folder, VMECH, "loads", "shaker-study.yaml", "--out", "shaker")
-    picture(browser, folder / "shaker" / "report.html", "tutorial-report", 1000, 1240)
+    report = folder / "shaker" / "report.html"
+    picture(browser, report, "tutorial-report", 1000, 1240)
+    plot(browser, report, "Load over the cycle", "tutorial-loads")
+    run(folder, VMECH, "sensitivities", "shaker-study.yaml", "--of", "wrist.force,main.drive",
+        "--out", "matters")
+    plot(browser, folder / "matters" / "report.html", "wrist.force", "tutorial-sensitivities")
 
 
 def gallery(browser, folder):
