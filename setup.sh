@@ -10,7 +10,7 @@ Usage: ./setup.sh COMMAND
   demo              build the vmech command and run the bearing-load study of a slider-crank
   test              build everything and run every test
   packages GROUP... install the groups of packages.txt: core, cad, doors, tests,
-                    tools, optional
+                    tools, docs, optional
   help              show this text
 
 Missing Debian packages are installed first, as root or through sudo; nothing else is downloaded.
@@ -78,7 +78,7 @@ run_demo() {
 }
 
 run_tests() {
-  install_packages core cad doors tests tools
+  install_packages core cad doors tests tools docs
   cmake --preset dev -DVMECH_REQUIRE_PACKAGES=ON -DVMECH_PRECOMPILE=ON -DVMECH_BATCHES=ON
   cmake --build --preset dev
   ctest --preset dev
@@ -92,7 +92,8 @@ case "${1:-help}" in
   demo) run_demo ;;
   test) run_tests ;;
   packages)
-    [[ $# -gt 1 ]] || die "packages: name one or more of core, cad, doors, tests, tools, optional"
+    [[ $# -gt 1 ]] ||
+      die "packages: name one or more of core, cad, doors, tests, tools, docs, optional"
     install_packages "${@:2}"
     ;;
   help | -h | --help) usage ;;

@@ -92,15 +92,20 @@ struct DualOf {
   }
 };
 
+/// A number with its derivatives.
 using Dual = DualOf<double>;
 
+/// Whether T is a number with derivatives.
 template <typename T>
 inline constexpr bool kIsDual = false;
+/// It is.
 template <typename N>
 inline constexpr bool kIsDual<DualOf<N>> = true;
 
+/// As many as its value has.
 template <typename N>
 inline constexpr int kLanesOf<DualOf<N>> = kLanesOf<N>;
+/// The value alone, of one lane.
 template <typename N>
 double Lane(const DualOf<N>& number, int lane) {
   return Lane(number.value, lane);
@@ -108,6 +113,7 @@ double Lane(const DualOf<N>& number, int lane) {
 
 }  // namespace vmech
 
+/// @cond
 template <typename N>
 struct Eigen::NumTraits<vmech::DualOf<N>> : Eigen::GenericNumTraits<vmech::DualOf<N>> {
   using Real = vmech::DualOf<N>;
@@ -134,3 +140,4 @@ template <typename N, typename Operation>
 struct Eigen::ScalarBinaryOpTraits<vmech::DualOf<N>, double, Operation> {
   using ReturnType = vmech::DualOf<N>;
 };
+/// @endcond

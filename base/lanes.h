@@ -11,21 +11,26 @@ namespace vmech {
 // The words by which kernels speak of a number T that may have lanes (Lanes4): here for a single
 // number, a lane of its own.
 
+/// `a` where the condition holds, else `b`.
 inline double Select(bool condition, double a, double b) {
   return condition ? a : b;
 }
+/// Sine and cosine of an angle [rad].
 inline void SinCos(double angle, double* sine, double* cosine) {
   *sine = std::sin(angle);
   *cosine = std::cos(angle);
 }
 
+/// Whether it holds in every lane.
 inline bool AllLanes(bool condition) {
   return condition;
 }
 
+/// How many lanes a number T has.
 template <typename T>
 inline constexpr int kLanesOf = 1;
 
+/// The number itself, which is its only lane.
 inline double Lane(double value, int /*lane*/) {
   return value;
 }

@@ -6,21 +6,28 @@
 
 namespace vmech {
 
+/// Three numbers.
 template <typename T>
 using Vector3 = Eigen::Matrix<T, 3, 1>;
+/// Six numbers, the linear part first.
 template <typename T>
 using Vector6 = Eigen::Matrix<T, 6, 1>;
+/// 3 x 3 numbers.
 template <typename T>
 using Matrix3 = Eigen::Matrix<T, 3, 3>;
+/// A matrix of any size.
 template <typename T>
 using MatrixX = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
+/// A vector of any length.
 template <typename T>
 using VectorX = Eigen::Matrix<T, Eigen::Dynamic, 1>;
 using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
+/// Six doubles, the linear part first.
 using Vector6d = Vector6<double>;
+/// 6 x 6 doubles.
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 /// [a; b]; quicker than Eigen's comma, which looks for alignment.
@@ -45,6 +52,7 @@ struct Pose {
     return {R.template cast<S>(), p.template cast<S>()};
   }
 };
+/// A pose in doubles.
 using Posed = Pose<double>;
 
 /// A force f [N] and a moment m [N m] about a point that the name of the variable states.
@@ -66,6 +74,7 @@ struct Wrench {
   /// [f; m].
   Vector6<T> Stacked() const { return vmech::Stacked<T>(force, moment); }
 };
+/// A wrench in doubles.
 using Wrenchd = Wrench<double>;
 
 /// The matrix S(a) with S(a) b = a x b.

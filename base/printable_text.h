@@ -19,6 +19,7 @@ struct FrontCharacter {
   bool valid = false;
 };
 
+/// The first character of a text, which must not be empty.
 inline FrontCharacter FrontCharacterOf(std::string_view text) {
   const auto byte = [&](size_t i) { return static_cast<uint8_t>(text[i]); };
   const uint8_t first = byte(0);
@@ -37,6 +38,7 @@ inline FrontCharacter FrontCharacterOf(std::string_view text) {
   return {bytes, code, true};
 }
 
+/// Whether a character steers the terminal, or the direction of the text, in place of being shown.
 inline bool IsControl(char32_t c) {
   if (c == '\n' || c == '\t') return false;
   return c < 0x20 || (c >= 0x7F && c <= 0x9F) || (c >= 0x202A && c <= 0x202E) ||
@@ -57,6 +59,7 @@ inline size_t AppendPrintable(std::string_view text, std::string* shown) {
   return at;
 }
 
+/// The text as it may be shown.
 inline std::string PrintableText(std::string_view text) {
   std::string shown;
   if (AppendPrintable(text, &shown) < text.size()) shown += "\uFFFD";

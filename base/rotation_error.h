@@ -16,6 +16,7 @@ enum class RotationError {
 
 /// e1 [6; m, rad]: displacement and logarithm of the rotation that lead from G to H, world axes.
 Vector6d HandError(const Posed& X_WG, const Posed& X_WH);
+/// The same in registers.
 Screw HandError(const Frame& X_WG, const Frame& X_WH) noexcept;
 /// With the rotation as `kind` has it.
 Screw HandError(RotationError kind, const Frame& X_WG, const Frame& X_WH) noexcept;
@@ -23,6 +24,7 @@ Screw HandError(RotationError kind, const Frame& X_WG, const Frame& X_WH) noexce
 /// Its inverse: the pose to which `way` [dp; dr] leads from X, HandError(X, Displaced(X, way)) =
 /// way for turns below half a turn.
 Posed Displaced(const Posed& X, const Vector6d& way) noexcept;
+/// The same in registers.
 Frame Displaced(const Frame& X, const Screw& way) noexcept;
 
 /// The rotation about r by |r| [rad].

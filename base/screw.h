@@ -12,10 +12,12 @@ namespace vmech {
 // the sources of the library alone: without AVX g++ puts such temporaries where they are not
 // aligned.
 
+/// The type of a vector of three numbers of type T; see Triple.
 template <typename T>
 struct TripleType {
   using type = Vector3<T>;
 };
+/// Three doubles are held in one register.
 template <>
 struct TripleType<double> {
   using type = Double4;
@@ -30,10 +32,12 @@ struct FrameT {
   Vector3<T> x = Vector3<T>::UnitX(), y = Vector3<T>::UnitY(), z = Vector3<T>::UnitZ(),
              p = Vector3<T>::Zero();
 };
+/// The same of doubles: each vector in one register, its fourth number zero.
 template <>
 struct FrameT<double> {
   Double4 x = {1, 0, 0, 0}, y = {0, 1, 0, 0}, z = {0, 0, 1, 0}, p = {0, 0, 0, 0};
 };
+/// A frame of doubles, in registers.
 using Frame = FrameT<double>;
 
 /// A twist: the velocity of what passes the reference point, and the angular velocity. Or a wrench:
@@ -43,10 +47,12 @@ template <typename T>
 struct ScrewT {
   Vector3<T> linear = Vector3<T>::Zero(), angular = Vector3<T>::Zero();
 };
+/// The same of doubles: each vector in one register.
 template <>
 struct ScrewT<double> {
   Double4 linear{}, angular{};
 };
+/// A screw of doubles, in registers.
 using Screw = ScrewT<double>;
 
 /// A frame in motion: its pose, and its twist about its own origin.
@@ -63,12 +69,14 @@ struct ScrewInertiaT {
   /// Columns of the inertia [kg m^2].
   Vector3<T> Ix = Vector3<T>::Zero(), Iy = Vector3<T>::Zero(), Iz = Vector3<T>::Zero();
 };
+/// The same of doubles: each row in one register.
 template <>
 struct ScrewInertiaT<double> {
   double mass = 0;
   Double4 moment{};
   Double4 Ix{}, Iy{}, Iz{};
 };
+/// An inertia of doubles, in registers.
 using ScrewInertia = ScrewInertiaT<double>;
 
 }  // namespace vmech

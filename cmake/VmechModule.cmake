@@ -66,6 +66,8 @@ function(vmech_add_module path)
         get_filename_component(folder vmech/${path}/${component} DIRECTORY)
         install(FILES ${component}.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder})
         list(APPEND installed "#include \"vmech/${path}/${component}.h\"\n")
+        set_property(GLOBAL APPEND PROPERTY VMECH_PUBLIC_HEADERS
+                     ${CMAKE_CURRENT_SOURCE_DIR}/${component}.h)
       endif()
     endif()
   endforeach()

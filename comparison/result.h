@@ -35,7 +35,9 @@ enum class Branch {
   kFree,     ///< the grasp does not tell the configuration, as at a singular pose
 };
 
+/// The verdict in words.
 std::string_view NameOf(Verdict verdict);
+/// The branch in words.
 std::string_view NameOf(Branch branch);
 Verdict VerdictFromName(std::string_view name);  ///< @throws std::invalid_argument
 Branch BranchFromName(std::string_view name);    ///< @throws std::invalid_argument

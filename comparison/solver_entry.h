@@ -31,6 +31,7 @@ class SolverEntry {
 
 /// All of them, in the order of tables.
 std::vector<SolverEntry> AllContestants();
+/// The one of a name; none if there is none.
 std::optional<SolverEntry> ContestantFromName(std::string_view name);
 
 }  // namespace vmech

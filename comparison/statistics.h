@@ -20,8 +20,10 @@ struct Tally {
   double share() const { return problems == 0 ? 0 : double(succeeded) / problems; }
 };
 
+/// Which results count.
 using Filter = std::function<bool(const Result&)>;
 
+/// Counts the results that the filter lets pass.
 Tally TallyOf(const Suite& suite, const std::vector<Result>& results, const Filter& filter);
 
 /// The solvers that results are of, in the order of AllContestants.

@@ -27,7 +27,9 @@ enum class StartKind {
   kFar,   ///< a closed configuration that has nothing to do with it
 };
 
+/// The kind of target in words.
 std::string_view NameOf(TargetKind kind);
+/// The kind of start in words.
 std::string_view NameOf(StartKind start);
 
 /// Targets of one kind. Distances and steps are measured over all coordinates of the tree, in
@@ -46,6 +48,7 @@ struct TargetBlock {
   bool is_path() const { return kind == TargetKind::kTracking || kind == TargetKind::kDeadCentre; }
 };
 
+/// A mechanism of a suite.
 struct SuiteMechanism {
   std::string name;  ///< unique in the suite
   Mechanism mechanism;

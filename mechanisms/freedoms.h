@@ -16,6 +16,7 @@ struct Freedoms {
   std::vector<bool> rotates;  ///< per freedom, in the order of the joint's lists
 };
 
+/// The freedoms of a joint of a type.
 const Freedoms& FreedomsOfType(JointType type);
 
 /// Is any freedom a rotation?
@@ -25,6 +26,7 @@ bool Rotates(JointType type);
 struct FrictionKeys {
   bool radius, thrust_radius, length, width;
 };
+/// Of a joint of a type.
 FrictionKeys FrictionKeysOf(JointType type);
 
 /// A turn about, or a shift along, an axis of the joint's frame: 0, 1, 2 for x, y, z.

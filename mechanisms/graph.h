@@ -9,6 +9,7 @@ namespace vmech {
 /// Links are vertices, joints are edges, the ground link is the root. A spanning tree reaches
 /// every link; each joint left over is cut and closes one loop.
 struct SpanningTree {
+  /// A joint that the tree passes, from the link nearer to the ground.
   struct Branch {
     int joint;        ///< index in Mechanism::joints
     int parent_link;  ///< nearer to the ground
@@ -18,6 +19,7 @@ struct SpanningTree {
   std::vector<int> cuts;         ///< indices of the cut joints, in file order
 };
 
+/// Which joints the tree keeps, and which it cuts.
 struct SpanningTreeOptions {
   /// Joints that must not be cut (the driven ones). A preferred cut that is also kept stays whole.
   std::vector<int> keep;

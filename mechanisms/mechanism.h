@@ -28,6 +28,7 @@ struct Anchor {
   Posed X_LA;  ///< pose in the link's drawing frame
 };
 
+/// A part that moves as one piece.
 struct Link {
   std::string name;
   MassProperties mass_properties;
@@ -50,6 +51,7 @@ struct PassiveOf {
   T viscous = 0;    ///< [N s/m] or [N m s/rad]
   T coulomb = 0;    ///< constant part of dry friction [N] or [N m]
 };
+/// Of a joint as a file has it.
 using Passive = PassiveOf<double>;
 /// Is there a spring or friction?
 bool HasPassive(const Passive& passive);
@@ -66,6 +68,7 @@ struct LoadFrictionOf {
   T length = 0;         ///< between the two supports that hold a tilting couple [m]
   T width = 0;          ///< between the two faces that keep a slide from turning [m]
 };
+/// Of a joint as a file has it.
 using LoadFriction = LoadFrictionOf<double>;
 
 /// A joint is the coincidence of an anchor on its first link with one on its second. At
@@ -87,6 +90,7 @@ struct Joint {
   std::optional<Vector6d> stiffness;
 };
 
+/// Whether a hand holds position and orientation, or the position alone.
 enum class GraspKind { kRigid, kPoint };
 
 /// A frame G on a link by which a hand holds the mechanism.
@@ -124,7 +128,9 @@ inline constexpr double kWidestTolerance = 0.01;  ///< of Mechanism::tolerance
 
 /// Index of the named item; -1 if there is none.
 int FindLink(const Mechanism& mechanism, std::string_view name);
+/// Index of the named joint; -1 if there is none.
 int FindJoint(const Mechanism& mechanism, std::string_view name);
+/// Index of the named grasp; -1 if there is none.
 int FindGrasp(const Mechanism& mechanism, std::string_view name);
 
 /// A freedom among those of a mechanism: "pin" where it is the joint's only one, else "ball.rx".

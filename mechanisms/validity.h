@@ -20,6 +20,7 @@ void RequireIndex(std::string_view field, int index, size_t count);
 
 /// @throws std::invalid_argument naming field and value.
 void RequireFinite(std::string_view field, double value);
+/// Refuses numbers below zero, too.
 void RequireNonNegative(std::string_view field, double value);
 
 }  // namespace vmech

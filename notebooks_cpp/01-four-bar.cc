@@ -58,7 +58,7 @@ int main(int argc, char** argv) {
   // \partial q$ knows better:
   //
   // $$
-  // \text{mobility} = n - \rank C = 3 - 2 = 1
+  // \text{mobility} = n - \operatorname{rank} C = 3 - 2 = 1
   // $$
 
   //%%

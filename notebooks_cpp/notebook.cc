@@ -5,12 +5,23 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "vmech/apps/plot/style.h"
+
 namespace vmech {
 
 Notebook::Notebook(int argc, char** argv) {
   if (argc < 2) return;
-  file_.reset(std::fopen(argv[1], "wb"));
-  if (!file_) throw std::runtime_error(fmt::format("cannot write the results to '{}'", argv[1]));
+  results_ = argv[1];
+  unfinished_ = results_ + ".part";
+  std::remove(results_.c_str());
+  file_.reset(std::fopen(unfinished_.c_str(), "wb"));
+  if (!file_) throw std::runtime_error(fmt::format("cannot write the results to '{}'", results_));
+}
+
+Notebook::~Notebook() {
+  if (!file_) return;
+  file_.reset();
+  std::rename(unfinished_.c_str(), results_.c_str());
 }
 
 void Notebook::Print(std::string_view text, Where where) {
@@ -22,11 +33,11 @@ void Notebook::Show(const html::Table& table, Where where) {
 }
 
 void Notebook::Show(const plot::LinePlot& plot, Where where) {
-  Write("html", html::Figure(plot::Draw(plot)).html(), where);
+  Write("svg", plot::StandaloneSvg(plot::Draw(plot)), where);
 }
 
 void Notebook::Show(const plot::PolarPlot& plot, Where where) {
-  Write("html", html::Figure(plot::Draw(plot)).html(), where);
+  Write("svg", plot::StandaloneSvg(plot::Draw(plot)), where);
 }
 
 void Notebook::Check(std::string_view claim, bool holds, Where where) {
@@ -50,7 +61,7 @@ void Notebook::CheckNear(std::string_view claim, double value, double expected, 
 void Notebook::Write(std::string_view kind, std::string_view content, const Where& where) {
   if (file_) {
     fmt::print(file_.get(), "{} {} {}\n{}\n", where.line(), kind, content.size(), content);
-  } else if (kind != "html") {
+  } else if (kind != "html" && kind != "svg") {
     fmt::print("{}{}\n", kind == "text" ? "" : fmt::format("{}: ", kind), content);
   }
 }

@@ -14,15 +14,19 @@
 namespace vmech {
 
 /// Where a chapter puts its results. A chapter is an ordinary program; every call remembers the
-/// line it was made from, so that the renderer can set each result under the cell it belongs to.
+/// line it was made from, so that chapter.py can set each result under the cell it belongs to.
 class Notebook {
  public:
   using Where = std::source_location;
 
-  /// With a file name as the program's argument all results go into that file for the renderer;
+  /// With a file name as the program's argument all results go into that file for chapter.py;
   /// without, texts and checks go to standard output and drawings are left out.
+  /// The file appears whole, at the end of the chapter, or not at all.
   /// @throws std::runtime_error if the file cannot be written.
   Notebook(int argc, char** argv);
+  ~Notebook();
+  Notebook(const Notebook&) = delete;
+  Notebook& operator=(const Notebook&) = delete;
 
   void Print(std::string_view text, Where where = Where::current());
   void Show(const html::Table& table, Where where = Where::current());
@@ -44,6 +48,7 @@ class Notebook {
   struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
+  std::string results_, unfinished_;  // the file's name, and that until it is whole
   std::unique_ptr<std::FILE, Close> file_;
   int failures_ = 0;
 };

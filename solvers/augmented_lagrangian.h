@@ -28,6 +28,7 @@ struct AugmentedLagrangianOptions {
   void Validate() const;
 };
 
+/// Memory of the augmented Lagrangian, made once for a problem.
 struct AugmentedLagrangianWorkspace {
   explicit AugmentedLagrangianWorkspace(const ConstrainedLeastSquares& problem);
   WeightedStep step;

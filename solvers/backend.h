@@ -25,6 +25,7 @@ enum class Backend {
   kKinsol,
 };
 
+/// All of them, in the order of the enumeration.
 inline constexpr std::array kAllBackends = {
     Backend::kPenalty,
     Backend::kAugmentedLagrangian,

@@ -27,6 +27,7 @@ struct PenaltyOptions {
   void Validate() const;
 };
 
+/// Memory of the penalty method, made once for a problem.
 struct PenaltyWorkspace {
   explicit PenaltyWorkspace(const ConstrainedLeastSquares& problem);
   WeightedStep step;

@@ -44,6 +44,7 @@ struct Outcome {
   double bias_bound = 0;
 };
 
+/// How a package solves a problem: x is its start, and afterwards where it ended.
 using BackEnd = std::function<Outcome(CountedProblem& problem, VectorXd* x)>;
 
 /// Runs a back end from x0 and judges where it ended: kConverged where `rule` is met, else

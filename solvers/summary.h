@@ -21,6 +21,7 @@ enum class SolveStatus {
   kUnavailable,     ///< the package was absent when vmech was built
 };
 
+/// The status in words.
 std::string_view NameOf(SolveStatus status);
 
 /// What came out of a solve. Residuals, KKT error and verdict are ours, not the back end's.

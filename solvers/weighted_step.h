@@ -52,6 +52,7 @@ class WeightedStep {
   /// Forgets the scale of the damping that Compute() has gathered.
   void ForgetScale() noexcept { scale_.setZero(); }
 
+  /// How a descent ended.
   struct Descent {
     bool ok = false;  ///< false: values that are not finite, or no step that descends
     bool stationary = false;

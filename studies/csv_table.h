@@ -24,6 +24,7 @@ struct CsvTable {
   const std::vector<double>* Find(std::string_view name) const;
 };
 
+/// The largest table that is read [bytes].
 constexpr size_t kMaxTableBytes = size_t{256} << 20;
 
 /// A text as a cell of a CSV file, on one line and quoted where it must be. One that a spreadsheet

@@ -30,6 +30,7 @@ struct DesignTask {
   std::vector<DesignConstraint> constraints;
 };
 
+/// How a design is searched.
 struct DesignOptions {
   int threads = 1;
   int starts = 1;  ///< the design as it is, and others that are spread over the bounds
@@ -46,6 +47,7 @@ struct DesignRun {
   std::string message;
 };
 
+/// What came of the search for a design.
 struct DesignResult {
   StudyFile best;              ///< the study with the best design
   std::vector<double> values;  ///< [variables]

@@ -8,6 +8,7 @@
 
 namespace vmech {
 
+/// What a figure of a study is.
 enum class FigureKind {
   kForce,        ///< of a joint: the size of its force [N]
   kMoment,       ///< of a joint: the size of the moment that it holds, across its freedoms [N m]

@@ -8,6 +8,7 @@
 
 namespace vmech {
 
+/// How derivatives of a study are computed.
 struct SensitivityOptions {
   int threads = 1;            ///< 1..64; the result does not depend on it
   bool undetermined = false;  ///< also of figures that statics does not determine, by the rule
@@ -26,6 +27,7 @@ struct FigureSlopes {
   double Elasticity(size_t parameter, const StudyParameter& of) const;
 };
 
+/// Derivatives of figures of a study by parameters.
 struct Sensitivities {
   std::vector<StudyParameter> parameters;
   std::vector<std::string> refusals;  ///< [parameters] why there is no derivative; mostly empty

@@ -65,6 +65,7 @@ struct BearingOutcome {
   JointBearings bearings;
 };
 
+/// What a study came to: its loads, its simulation and its bearings.
 struct StudyOutcome {
   LoadStudyResult loads;
   std::optional<SimulationResult> simulation;  ///< of a study that has one; without its loads

@@ -44,6 +44,7 @@ struct RankSplit {
   MatrixXd left_null_space;  ///< [rows, rows - rank], orthonormal: U'A = 0
   MatrixXd pseudo_inverse;   ///< [columns, rows]
 };
+/// Splits A; `tolerance` as of FindNullSpace.
 RankSplit SplitByRank(const MatrixXd& A, double tolerance);
 
 /// `count` rows of A, one after the other the one that is farthest from the span of those before;
@@ -55,6 +56,7 @@ struct LeftSingularVectors {
   VectorXd values;
   MatrixXd vectors;
 };
+/// The singular values and left singular vectors of A.
 LeftSingularVectors FindLeftSingularVectors(const MatrixXd& A);
 
 }  // namespace vmech

@@ -36,6 +36,7 @@
 extern "C" {
 #endif
 
+/* What came of a call. */
 typedef int32_t vmech_status;
 enum {
   VMECH_OK = 0,
@@ -47,9 +48,13 @@ enum {
   VMECH_INTERNAL = 6       /* a defect of the library; the message says which */
 };
 
+/* A mechanism, read or built. */
 typedef struct vmech_mechanism vmech_mechanism;
+/* A mechanism, its motion, and what loads it. */
 typedef struct vmech_study vmech_study;
+/* What a run came to. */
 typedef struct vmech_result vmech_result;
+/* A mechanism in a hand. */
 typedef struct vmech_tick vmech_tick;
 
 /* A frame in another: its origin [m], and its axes as the columns of a rotation, row after row. */
@@ -66,11 +71,15 @@ VMECH_API const char* vmech_version(void);
 
 /* From a file (docs/file-format.md), or from its text; `name` stands for the file in messages. */
 VMECH_API vmech_mechanism* vmech_mechanism_open(const char* path);
+/* From a text; `name` stands for the file in messages. */
 VMECH_API vmech_mechanism* vmech_mechanism_parse(const char* text, const char* name);
 /* An empty one, to be built by the functions below; its first link is the ground. */
 VMECH_API vmech_mechanism* vmech_mechanism_new(const char* name);
+/* Gives it back; NULL is allowed. */
 VMECH_API void vmech_mechanism_free(vmech_mechanism* mechanism);
+/* The status of the handle. */
 VMECH_API vmech_status vmech_mechanism_status(const vmech_mechanism* mechanism);
+/* What the handle says of its status. */
 VMECH_API const char* vmech_mechanism_message(const vmech_mechanism* mechanism);
 
 /* Building. Each returns the index of what it added; -1, and the handle fails, if that is not
@@ -82,6 +91,7 @@ typedef struct vmech_link {
   double center[3];  /* of gravity [m] */
   double inertia[6]; /* xx yy zz xy xz yz, elements of the matrix about it [kg m^2] */
 } vmech_link;
+/* Adds a link; the first is the ground. */
 VMECH_API int32_t vmech_add_link(vmech_mechanism* mechanism, const vmech_link* link);
 
 /* A frame on a link, in the link's drawing frame. `z` and `x` need not be of length 1; x is made
@@ -92,6 +102,7 @@ typedef struct vmech_anchor {
   double z[3], x[3];
 } vmech_anchor;
 
+/* Which freedoms a joint has, in their order. */
 typedef int32_t vmech_joint_type;
 enum {
   VMECH_REVOLUTE = 0,    /* about z */
@@ -103,6 +114,7 @@ enum {
   VMECH_PLANAR = 6, /* along x and y of the first anchor, then about z */
   VMECH_WELD = 7
 };
+/* A joint between anchors of two links. */
 typedef struct vmech_joint {
   size_t struct_size;
   const char* name;
@@ -113,12 +125,15 @@ typedef struct vmech_joint {
    * unit quaternion w x y z. */
   const double* start;
 } vmech_joint;
+/* Adds a joint. */
 VMECH_API int32_t vmech_add_joint(vmech_mechanism* mechanism, const vmech_joint* joint);
 /* A frame by which a hand holds the mechanism; `is_point`: by its position alone. */
 VMECH_API int32_t vmech_add_grasp(vmech_mechanism* mechanism, const char* name,
                                   const vmech_anchor* frame, int32_t is_point);
+/* Gravity in the axes of the ground [m/s^2]. */
 VMECH_API vmech_status vmech_set_gravity(vmech_mechanism* mechanism, const double gravity[3]);
 
+/* What a mechanism has several of. */
 typedef int32_t vmech_item;
 enum { VMECH_LINKS = 0, VMECH_JOINTS = 1, VMECH_GRASPS = 2, VMECH_FREEDOMS = 3 };
 /* How many there are; 0 of a failed mechanism. */
@@ -136,8 +151,11 @@ VMECH_API int32_t vmech_mechanism_find(const vmech_mechanism* mechanism, vmech_i
 VMECH_API vmech_study* vmech_study_open(const char* path);
 /* Of a mechanism, at rest at time 0 and without loads but its weight, to be added to. */
 VMECH_API vmech_study* vmech_study_new(const vmech_mechanism* mechanism);
+/* Gives it back; NULL is allowed. */
 VMECH_API void vmech_study_free(vmech_study* study);
+/* The status of the handle. */
 VMECH_API vmech_status vmech_study_status(const vmech_study* study);
+/* What the handle says of its status. */
 VMECH_API const char* vmech_study_message(const vmech_study* study);
 /* A copy of the study's mechanism. */
 VMECH_API vmech_mechanism* vmech_study_mechanism(const vmech_study* study);
@@ -152,6 +170,7 @@ typedef struct vmech_drive {
   const double* times;  /* [rows] increasing [s] */
   const double* values; /* [rows] */
 } vmech_drive;
+/* Adds a motor. */
 VMECH_API vmech_status vmech_study_add_drive(vmech_study* study, const vmech_drive* drive);
 /* The times of the poses [s], increasing. `cycle`: the motion repeats after it [s]; 0: it does
  * not. */
@@ -164,6 +183,7 @@ VMECH_API vmech_status vmech_study_add_load(vmech_study* study, int32_t link, co
 
 /* ---- Results ---- */
 
+/* How a study is run. */
 typedef struct vmech_run_options {
   size_t struct_size;
   int32_t threads; /* 1 to 64; 0 is 1. The result does not depend on it */
@@ -176,6 +196,7 @@ typedef struct vmech_run_options {
  * stops early has VMECH_NO_SOLUTION or VMECH_INTERRUPTED, and what it had computed. */
 VMECH_API vmech_result* vmech_study_run(const vmech_study* study, const vmech_run_options* options);
 
+/* The hand, and who looks for the nearest pose. */
 typedef struct vmech_ik_options {
   size_t struct_size;
   int32_t grasp;
@@ -189,6 +210,7 @@ typedef struct vmech_ik_options {
  * reach is no failure: see the last of these. */
 VMECH_API vmech_result* vmech_ik(const vmech_mechanism* mechanism, const vmech_ik_options* options);
 
+/* What a search for assembly modes holds, and how long it searches. */
 typedef struct vmech_modes_options {
   size_t struct_size;
   const int32_t* held; /* freedoms that stay as they start */
@@ -205,12 +227,16 @@ typedef struct vmech_modes_options {
 VMECH_API vmech_result* vmech_assembly_modes(const vmech_mechanism* mechanism,
                                              const vmech_modes_options* options);
 
+/* Gives it back; NULL is allowed. */
 VMECH_API void vmech_result_free(vmech_result* result);
+/* The status of the handle. */
 VMECH_API vmech_status vmech_result_status(const vmech_result* result);
+/* What the handle says of its status. */
 VMECH_API const char* vmech_result_message(const vmech_result* result);
 /* What a user should know, a sentence each; NULL beyond the last. */
 VMECH_API const char* vmech_result_warning(const vmech_result* result, size_t index);
 
+/* What a result holds arrays of. */
 typedef int32_t vmech_quantity;
 enum {
   VMECH_TIMES = 0,           /* [poses] [s] */
@@ -242,6 +268,7 @@ typedef struct vmech_array {
   size_t shape[4];
   ptrdiff_t strides[4]; /* [bytes] */
 } vmech_array;
+/* An array of a result, where it lies. */
 VMECH_API vmech_status vmech_result_array(const vmech_result* result, vmech_quantity quantity,
                                           vmech_array* array);
 /* The same numbers into memory of the caller, whose strides [bytes] are `strides`, one for each
@@ -249,6 +276,7 @@ VMECH_API vmech_status vmech_result_array(const vmech_result* result, vmech_quan
 VMECH_API vmech_status vmech_result_copy(const vmech_result* result, vmech_quantity quantity,
                                          double* to, const ptrdiff_t* strides);
 
+/* Whether statics determines a component of a wrench. */
 typedef int32_t vmech_certainty;
 enum {
   VMECH_CERTAIN = 0,
@@ -277,6 +305,7 @@ VMECH_API vmech_status vmech_result_bearings(const vmech_result* result, size_t 
 
 /* ---- A mechanism in a hand, for loops of a kHz ---- */
 
+/* What couples hand and mechanism, and how often. */
 typedef struct vmech_tick_options {
   size_t struct_size;
   int32_t grasp;
@@ -291,8 +320,11 @@ typedef struct vmech_tick_options {
  * It starts assembled, where the mechanism starts, at rest. */
 VMECH_API vmech_tick* vmech_tick_new(const vmech_mechanism* mechanism,
                                      const vmech_tick_options* options);
+/* Gives it back; NULL is allowed. */
 VMECH_API void vmech_tick_free(vmech_tick* tick);
+/* The status of the handle. */
 VMECH_API vmech_status vmech_tick_status(const vmech_tick* tick);
+/* What the handle says of its status. */
 VMECH_API const char* vmech_tick_message(const vmech_tick* tick);
 /* One period with the hand at a pose in the world: what the hand is to feel, about its origin,
  * world axes. No memory, lock or system call. VMECH_NO_SOLUTION, and a wrench of zero, where there

@@ -42,6 +42,7 @@ struct ArrangementLoads {
 /// The shares of one wrench: R_a, and R_b where there is a second bearing. T: double or Dual.
 template <typename T>
 std::array<Vector3<T>, 2> SharesOf(const Arrangement& arrangement, const Wrench<T>& wrench);
+/// The loads of each bearing at every pose, by SharesOf.
 ArrangementLoads DistributeLoads(const Arrangement& arrangement, std::span<const Wrenchd> wrenches);
 
 }  // namespace vmech

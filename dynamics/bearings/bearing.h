@@ -7,6 +7,7 @@
 
 namespace vmech {
 
+/// The kinds of bearings whose loads and lives are known here.
 enum class BearingKind {
   kDeepGrooveBall,     ///< single row, normal internal clearance: radial and axial load
   kCylindricalRoller,  ///< purely radial load

@@ -26,6 +26,7 @@ struct DutyCycle {
 /// @throws std::invalid_argument if the times do not ascend.
 std::vector<double> DurationsFromTimes(std::span<const double> times);
 
+/// How a bearing turns over a cycle.
 enum class Rotation {
   kStanding,     ///< does not turn: there is no rating life, static safety alone decides
   kTurning,      ///< always in the same direction

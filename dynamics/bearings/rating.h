@@ -11,6 +11,7 @@
 
 namespace vmech {
 
+/// It decides which limit of the speed holds.
 enum class Lubrication { kGrease, kOil };
 
 /// What is asked of each bearing of a joint, and of two of them together.
@@ -51,6 +52,7 @@ BearingRating RateBearing(const Bearing& bearing, std::span<const BearingForce> 
 /// P of every pose [N], for plots.
 std::vector<double> EquivalentLoads(const Bearing& bearing, std::span<const BearingForce> forces);
 
+/// What a bearing may fail to meet.
 enum class Criterion {
   kShaft,         ///< the bore is outside shaft_min .. shaft_max
   kHousing,       ///< D > housing_max

@@ -56,6 +56,7 @@ struct PoseState {
 /// Like std::allocator, but numbers start undefined: they are written once, when they are known.
 template <typename T>
 struct UndefinedStart : std::allocator<T> {
+  /// The same allocator for another type, as the standard asks for.
   template <typename U>
   struct rebind {
     using other = UndefinedStart<U>;

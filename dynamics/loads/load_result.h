@@ -9,6 +9,7 @@
 
 namespace vmech {
 
+/// What a load study came to, in SI units. Shapes stand in square brackets.
 struct LoadStudyResult {
   PoseSeries poses;
   std::vector<JointCertainty> certainty;   ///< per joint; `singular` only if it is so at every pose

@@ -68,6 +68,7 @@ struct LoadStudy {
   double norm_length = 0;
 };
 
+/// How a load study is run; the mechanism and its motion are in LoadStudy.
 struct LoadStudyOptions {
   int threads = 1;                   ///< 1..64; the result does not depend on it
   double closure_tolerance = 1e-13;  ///< largest loop error that counts as closed, of the

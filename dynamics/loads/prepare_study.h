@@ -28,6 +28,7 @@ PreparedStudy PrepareStudy(const LoadStudy& study);
 
 /// The drives' positions in words, "with 'main' at 180 deg", and what may be done at a dead centre.
 std::string DrivesAt(const LoadStudy& study, const std::vector<double>& positions);
+/// What a user may do about a pose at a dead centre.
 inline constexpr std::string_view kPastDeadCentre =
     "Drive another joint, stop the motion short of it, or leave the pose out by another start or "
     "number of steps";

@@ -16,6 +16,7 @@ enum class Certainty {
   kSingular,       ///< grows without bound as this pose (a dead centre) is approached
 };
 
+/// The certainty in words.
 constexpr std::string_view NameOf(Certainty certainty) {
   switch (certainty) {
     case Certainty::kCertain:

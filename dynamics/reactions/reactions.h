@@ -18,8 +18,9 @@ struct JointCompliance {
   Vector3d moment = Vector3d::Zero();
 };
 
-/// Compliances for a rule. `stiffness` takes 1/Joint::stiffness; where a joint gives none, and for
-/// `minimum_norm` in every joint, 1/kDefaultStiffness and 1/(kDefaultStiffness length^2).
+/// Compliances for a rule. `stiffness` takes the inverses of a joint's stiffness; where a joint
+/// gives none, and for `minimum_norm` in every joint, 1/kDefaultStiffness and
+/// 1/(kDefaultStiffness length^2).
 std::vector<JointCompliance> CompliancesForRule(const KinematicTree& tree, ReactionRule rule,
                                                 double length);
 inline constexpr double kDefaultStiffness = 1e8;  ///< [N/m], of a medium-sized ball bearing

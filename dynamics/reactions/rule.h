@@ -11,6 +11,7 @@ enum class ReactionRule {
   kPaperJoint,   ///< paper eq. (14) as printed: drive and cut wrenches in one minimum-norm step
 };
 
+/// The rule as files and options have it.
 constexpr std::string_view NameOf(ReactionRule rule) {
   switch (rule) {
     case ReactionRule::kStiffness:

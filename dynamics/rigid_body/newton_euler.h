@@ -34,6 +34,7 @@ struct TreeInertias {
   // with those on the way to the ground.
   std::vector<ScrewInertiaT<T>> composites, received;
   std::vector<char> has_received;
+  /// A pair of velocity indices whose entry in the mass matrix is not zero.
   struct Entry {
     int node, v, u;
     int above, below;  ///< (u, v) and (v, u) in M

@@ -8,12 +8,14 @@
 
 namespace vmech {
 
+/// What a mechanism does that is moved a little out of an equilibrium.
 enum class Stability {
   kStable,    ///< a least energy: it comes back
   kNeutral,   ///< some motion changes nothing
   kUnstable,  ///< some motion runs away
 };
 
+/// The stability in words.
 constexpr std::string_view NameOf(Stability stability) {
   switch (stability) {
     case Stability::kStable:

@@ -22,6 +22,7 @@ struct InitialValueProblem {
   double first_step = 0;           ///< [s]
 };
 
+/// What an integrator has done since it began.
 struct IntegratorCounts {
   long steps = 0, evaluations = 0, error_test_failures = 0;
   long nonlinear_iterations = 0, nonlinear_failures = 0, jacobians = 0;

@@ -78,6 +78,7 @@ struct StartRate {
   double rate = 0;  ///< [m/s] or [rad/s]; of a spherical joint about x, y or z of its second anchor
 };
 
+/// Where a simulation starts.
 enum class SimulationStart {
   kAsDrawn,      ///< at the mechanism's start values, its loops closed
   kEquilibrium,  ///< at the static equilibrium that is reached from there, at rest
@@ -114,6 +115,7 @@ struct Simulation {
 /// @throws std::invalid_argument naming the field, its value and what it must be.
 void RequireValid(const Simulation& simulation);
 
+/// Who integrates.
 enum class SimulationMethod {
   kAutomatic,  ///< Adams, and BDF from where the mechanism proves stiff
   kAdams,      ///< CVODES, Adams-Moulton of order 1 to 12, fixed-point iteration
@@ -121,6 +123,7 @@ enum class SimulationMethod {
   kIdas,       ///< IDAS on the stabilised index-2 equations: an independent check, without events
 };
 
+/// The method in words.
 constexpr std::string_view NameOf(SimulationMethod method) {
   switch (method) {
     case SimulationMethod::kAutomatic:
@@ -135,6 +138,7 @@ constexpr std::string_view NameOf(SimulationMethod method) {
   return "";
 }
 
+/// How a simulation is integrated, and how exactly.
 struct SimulationOptions {
   SimulationMethod method = SimulationMethod::kAutomatic;
   /// Local error of coordinates and rates, relative, [1e-14, 1e-2]. Chaotic and fast mechanisms

@@ -10,6 +10,7 @@
 
 namespace vmech {
 
+/// How a simulation ended.
 enum class SimulationStatus {
   kNotRun,
   kFinished,     ///< it went to the last of the times
@@ -18,6 +19,7 @@ enum class SimulationStatus {
   kFailed,       ///< it could not go on, and `message` says why; what was computed is there
 };
 
+/// The status in words.
 constexpr std::string_view NameOf(SimulationStatus status) {
   switch (status) {
     case SimulationStatus::kNotRun:
@@ -52,6 +54,7 @@ struct SimulationEvent {
   double value = 0;  ///< the coordinate [m] or [rad]
   double rate = 0;   ///< before the event [m/s] or [rad/s]
 };
+/// The kind in words.
 std::string_view NameOf(SimulationEvent::Kind kind);
 
 /// Of the whole mechanism at one time [J].
@@ -67,6 +70,7 @@ struct EnergySample {
   double error = 0;
 };
 
+/// What a simulation cost.
 struct SimulationStatistics {
   SimulationMethod method = SimulationMethod::kAdams;  ///< at the end
   long steps = 0;
@@ -90,6 +94,7 @@ struct MovedRate {
   double from = 0, to = 0;  ///< [m/s] or [rad/s]
 };
 
+/// What a simulation came to, in SI units. Shapes stand in square brackets.
 struct SimulationResult {
   SimulationStatus status = SimulationStatus::kNotRun;
   std::string message;  ///< why it stopped, a sentence

@@ -11,6 +11,7 @@
 
 namespace vmech {
 
+/// The most joints that an arm may have.
 inline constexpr int kMaxArmJoints = 16;
 /// A number for each of an arm's joints, and zeros for those that it does not have.
 using JointArray = Eigen::Array<double, kMaxArmJoints, 1>;

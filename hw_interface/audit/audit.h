@@ -31,6 +31,7 @@ struct EnergyBalance {
   double constraint = 0;  ///< work of the constraints along the motions that they leave free
 };
 
+/// What an audit of a recording found.
 struct AuditReport {
   std::uint64_t ticks = 0;
   std::vector<AuditFinding> findings;

@@ -14,8 +14,9 @@ struct SessionPromise {
   HandCoupling coupling;  ///< at the mechanism: of the spring, or of the paper's constraint
 };
 
-/// As notes of a recording, and back; of the hand, counted from 0.
+/// As notes of a recording; of the hand, counted from 0.
 RecordingNotes NotesOf(const SessionPromise& promise, int hand = 0);
+/// What a recording's notes say of it.
 SessionPromise PromiseOf(const RecordingHeader& header, int hand = 0);
 
 }  // namespace vmech

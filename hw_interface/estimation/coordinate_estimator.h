@@ -20,6 +20,7 @@ enum class EstimatorKind {
   kFiniteDifferences,  ///< the paper's
 };
 
+/// What a coordinate estimator takes for given of the motion.
 struct EstimatorOptions {
   EstimatorKind kind = EstimatorKind::kObserver;
   double jerk_density = 1e2;          ///< kKalman, lengths [m^2/s^5], in [1e-6, 1e12]

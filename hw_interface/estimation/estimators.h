@@ -13,6 +13,7 @@ template <typename Coordinate>
 struct MotionEstimateOf {
   Coordinate x{}, v{}, a{};
 };
+/// Of a single coordinate.
 using MotionEstimate = MotionEstimateOf<double>;
 
 /// The paper's way: v = (x_k - x_k-1)/T, a = (v_k - v_k-1)/T. An encoder step D gives an

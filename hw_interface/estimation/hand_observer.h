@@ -8,6 +8,7 @@
 
 namespace vmech {
 
+/// How a hand observer follows the hand, and what it takes for given of the arm.
 struct HandObserverOptions {
   /// How fast it follows what the hand does of itself [1/s], 0 or in [30, 1000]; 0: no observer.
   /// Lower is quieter, and relies more on the arm's model.

@@ -12,6 +12,7 @@ namespace vmech {
 
 class WebSocketClient;
 
+/// Where an Inverse3 is reached, and how it is served.
 struct HaplyOptions {
   int port = 10001;            ///< of the Inverse Service on this machine, in [1, 65535]
   double period = 1e-3;        ///< T at which states are asked for [s], in [2.5e-4, 0.1]

@@ -10,6 +10,7 @@
 
 namespace vmech {
 
+/// How the freedoms of an arm that the hand does not feel are held.
 struct PostureOptions {
   double stiffness = 2;  ///< towards the nominal posture [N m/rad], in [0, 100]
   double damping = 0.3;  ///< of motion that the hand does not feel [N m s/rad], in [0, 10]

@@ -7,6 +7,7 @@
 
 namespace vmech {
 
+/// What a real-time loop asks of the operating system.
 struct RealtimeOptions {
   bool lock_memory = true;  ///< no page of the process is swapped out
   /// SCHED_FIFO priority, 1..99; 0 leaves the scheduler alone. Not 99: the kernel's own threads
@@ -53,6 +54,7 @@ class RealtimeScope {
 
 /// Flush-to-zero and denormals-are-zero for the calling thread; returns the mode before.
 unsigned SetFlushToZero() noexcept;
+/// Back to a mode that SetFlushToZero returned.
 void RestoreFloatingPoint(unsigned mode) noexcept;
 
 }  // namespace vmech

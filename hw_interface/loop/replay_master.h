@@ -5,6 +5,7 @@
 
 namespace vmech {
 
+/// How much of a recorded session is repeated.
 enum class ReplayKind {
   kHand,     ///< the hand only: no wrench is at work, whatever was
   kSession,  ///< the device with its physics, the wrenches at work, the samples that were missing,

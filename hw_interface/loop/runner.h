@@ -18,6 +18,7 @@
 
 namespace vmech {
 
+/// How long a loop runs, and what is kept of it.
 struct RunnerOptions {
   double seconds = 0;   ///< how long to run; 0: until Stop, in [0, 1e6]
   bool record = false;  ///< keep every tick; needs `seconds`
@@ -39,6 +40,7 @@ struct RunnerOptions {
   void Validate() const;
 };
 
+/// Why a loop ended.
 enum class RunStatus : std::uint8_t {
   kNotRun,
   kFinished,  ///< the time is over

@@ -22,6 +22,7 @@ enum class Lifecycle : std::uint8_t {
   kFinalized,     ///< after Shutdown; nothing more can be done
 };
 
+/// What came of reading a device, or of commanding it.
 enum class IoStatus : std::uint8_t {
   kOk,
   kNoNewData,    ///< the state is that of the last read
@@ -30,6 +31,7 @@ enum class IoStatus : std::uint8_t {
   kRefused,      ///< a command of a mode that the device does not take; nothing was sent
 };
 
+/// What a command asks of the motors.
 enum class CommandMode : std::uint8_t { kZero, kWrench, kJointTorque };
 
 /// A sample. Fixed size, plain: it is copied to recordings and over the wire as it is.

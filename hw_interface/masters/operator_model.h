@@ -25,6 +25,7 @@ struct OperatorImpedance {
   double angular_stiffness = 0, angular_damping = 0;  ///< [N m/rad], [N m s/rad], >= 0
 };
 
+/// How firmly the simulated operator holds the handle.
 enum class Grip { kAbsent, kLight, kRelaxed, kFirm };
 
 /// `kRelaxed`: mass, damping and stiffness of an arm in a posture task, measured by van Beek et

@@ -22,6 +22,7 @@ typedef struct {
   double mass, damping, coulomb, resolution, peak, max_speed;
 } vmech_plugin_physics;
 
+/* What the device states of itself. */
 typedef struct {
   char name[64];
   double period; /* [s], > 0 */
@@ -30,6 +31,7 @@ typedef struct {
   vmech_plugin_physics linear, angular;
 } vmech_plugin_info;
 
+/* What the device senses, at a time of its own clock. */
 typedef struct {
   uint64_t sequence;
   int64_t device_time_ns;
@@ -42,6 +44,7 @@ typedef struct {
   double gripper_opening; /* [rad] */
 } vmech_plugin_state;
 
+/* What the device is to exert, and until when. */
 typedef struct {
   uint64_t sequence;
   int64_t valid_until_ns; /* of the clock whose time `read` is given */

@@ -6,6 +6,7 @@
 
 namespace vmech {
 
+/// Where a 6-axis mouse is read, and what its deflection means.
 struct SpacenavOptions {
   /// The daemon's socket; empty: $SPNAV_SOCKET, or where Debian's spacenavd puts it.
   std::string socket;

@@ -6,6 +6,7 @@
 
 namespace vmech {
 
+/// How the motion of a handle is carried over to the mechanism.
 struct WorkspaceOptions {
   /// Motion at the mechanism over motion of the handle, in [0.01, 100]; rotations stay as they are.
   double motion_scale = 1;

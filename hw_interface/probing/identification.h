@@ -14,6 +14,7 @@ struct AxisFit {
   double travel = 0;       ///< largest distance from the mean [m]
 };
 
+/// What an identification found of a handle.
 struct HandleFit {
   std::array<AxisFit, 3> axes;  ///< x, y, z of the device
   double delay = 0;             ///< from a command to its force, beyond the sampling [s]
@@ -33,6 +34,7 @@ struct HandleFit {
 /// @throws std::runtime_error if the run is too short or the handle did not move.
 HandleFit FitHandle(const Recording& shaken);
 
+/// The largest force that a handle was found to exert.
 struct PeakFit {
   double peak = 0;       ///< [N], of the weakest axis
   bool reached = false;  ///< false: the device exerted all that it was asked for, up to `peak`

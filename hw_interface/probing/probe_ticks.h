@@ -38,6 +38,7 @@ class HandleSpring {
   Vector3d p_ = Vector3d::Zero(), v_ = Vector3d::Zero();
 };
 
+/// How a handle is shaken to be identified.
 struct ShakeOptions {
   double force = 1;      ///< largest [N], in [0.01, 100]
   double reach = 0.015;  ///< the force grows until the handle moves so far [m], in [1e-4, 0.2]

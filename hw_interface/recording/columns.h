@@ -15,7 +15,9 @@ namespace vmech {
 /// Names of numbers that stand for something: the number is the index. Whatever has no name is
 /// written, and may be read, as its number.
 using ValueNames = std::vector<std::string>;
+/// Of an IoStatus.
 const ValueNames& IoNames();
+/// Of a ForceOff.
 const ValueNames& ForceOffNames();
 /// Of bits of SafetyStage together: "none", "ramped", "damped", "ramped+damped", ...
 const ValueNames& StageNames();
@@ -199,6 +201,7 @@ class ColumnVisit {
   std::string prefix_;  // of the columns of a hand beside the first
 };
 
+/// Hands every column of a tick to the visitor, in the order of the table.
 template <typename Visitor, typename Tick>
 void VisitColumns(const RecordingHeader& header, Visitor* visit, Tick* tick) {
   ColumnVisit<Visitor, Tick>(header, visit, tick).All();
@@ -206,6 +209,7 @@ void VisitColumns(const RecordingHeader& header, Visitor* visit, Tick* tick) {
 
 /// What a column holds.
 enum class CellKind { kNumber, kInteger, kFlag, kName };
+/// A column of a recording as text.
 struct Column {
   std::string name;
   CellKind kind;
@@ -216,12 +220,14 @@ std::vector<Column> ColumnsOf(const RecordingHeader& header);
 
 /// A row of a table, "0.1,ok,..", and the members of an object, "\"p_x\":0.1,\"io\":\"ok\",..".
 void AppendRow(const RecordingHeader& header, const TickRecord& tick, std::string* text);
+/// The members of an object; `columns` are those of the header.
 void AppendMembers(const RecordingHeader& header, const std::vector<Column>& columns,
                    const TickRecord& tick, std::string* text);
 /// And back. `tick` is an EmptyTick or any other of this recording.
 /// @throws std::runtime_error naming the column and what is wrong there.
 void ReadRow(const RecordingHeader& header, const std::vector<Column>& columns,
              std::string_view row, TickRecord* tick);
+/// The same of the members of an object.
 void ReadMembers(const RecordingHeader& header, const std::vector<Column>& columns,
                  std::string_view members, TickRecord* tick);
 

@@ -12,6 +12,7 @@ namespace vmech {
 /// A header but for the text of the mechanism, item by item: "device", "period", "note file",
 /// "channel 0", ... Keys are unique, texts are single lines, numbers come back to the last bit.
 using HeaderItems = std::vector<std::pair<std::string, std::string>>;
+/// The items of a header.
 HeaderItems ItemsOf(const RecordingHeader& header);
 
 /// Takes an item as one line, "KEY TEXT". @throws std::runtime_error saying what is wrong with it.

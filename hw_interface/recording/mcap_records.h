@@ -11,6 +11,7 @@ namespace vmech {
 
 inline constexpr std::string_view kMcapMagic{"\x89MCAP0\r\n", 8};
 
+/// The kinds of records, by the first byte of each.
 enum class McapOpcode : std::uint8_t {
   kHeader = 0x01,
   kFooter = 0x02,

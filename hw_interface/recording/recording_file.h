@@ -16,6 +16,7 @@ std::unique_ptr<RecordingWriter> MakeRecordingWriter(const std::filesystem::path
 /// @throws std::runtime_error if the file cannot be written.
 void WriteRecording(const std::filesystem::path& file, const Recording& recording);
 
+/// How much of a recording is read.
 enum class RecordingPart {
   kWhole,
   kSamples,  ///< without `picture` and `channels`: for a replay, which finds them anew

@@ -15,6 +15,7 @@
 
 namespace vmech {
 
+/// Where a session is written while it runs.
 struct RecorderOptions {
   /// Where the session is written while it runs: an open file, which stays the caller's; -1:
   /// nowhere.

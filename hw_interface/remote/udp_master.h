@@ -6,6 +6,7 @@
 
 namespace vmech {
 
+/// Where a remote device is reached, and when it counts as lost.
 struct UdpMasterOptions {
   UdpAddress device{"127.0.0.1", 47800};  ///< where the UdpServer listens
   UdpAddress local;                       ///< to bind here

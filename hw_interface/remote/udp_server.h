@@ -9,6 +9,7 @@ namespace vmech {
 /// ramps and passivity are the host's, who knows the mechanism.
 SafetyOptions DeviceLimits();
 
+/// Where a device is offered to a host, and what becomes of it when the host is silent.
 struct UdpServerOptions {
   /// Where to listen. There is no authentication: an address other than the machine's own lets
   /// anybody in the network move the device.

@@ -23,6 +23,7 @@ enum class PacketKind : std::uint16_t {
   kBye = 5,      ///< host -> device: motors off. No payload
 };
 
+/// What every packet between a host and a remote device begins with.
 struct PacketHeader {
   PacketKind kind = PacketKind::kHello;
   std::uint64_t session = 0;           ///< chosen by the host; a packet of another is not for us
@@ -31,6 +32,7 @@ struct PacketHeader {
   std::int64_t reflected_sent_ns = 0;  ///< `sent_ns` of the newest packet from the other side
 };
 
+/// A command to a remote device.
 struct RemoteCommand {
   bool active = false;           ///< the host's master is active
   std::int64_t lifetime_ns = 0;  ///< of the command, from its arrival
@@ -46,7 +48,9 @@ struct UdpPacket {
   RemoteCommand command;
 };
 
+/// [bytes]
 inline constexpr std::size_t kLargestPacket = 512;
+/// Room for any packet.
 using PacketBytes = std::array<std::byte, kLargestPacket>;
 
 /// Writes a packet and returns its size. No allocation except for reading the name of kInfo.

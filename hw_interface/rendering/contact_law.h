@@ -4,6 +4,7 @@
 
 namespace vmech {
 
+/// What the constraint answers to a violation e1 by the hand.
 enum class ContactKind {
   kLinear,        ///< w_c = K e1 (paper eq. 11)
   kViscoelastic,  ///< w_c = K e1 + B e1'

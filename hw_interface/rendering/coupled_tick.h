@@ -12,6 +12,7 @@
 
 namespace vmech {
 
+/// What a CoupledTick couples by, and how fast it takes hold and lets go.
 struct CoupledTickOptions {
   /// Spring and damper as the only hand feels them (ChooseCoupling). Stiffer feels truer and calls
   /// for a faster device.

@@ -11,6 +11,7 @@
 
 namespace vmech {
 
+/// What a MechanismTick renders of a mechanism that follows the hand.
 struct MechanismTickOptions {
   /// As the hand feels it; its stiffness is also the metric in which the mechanism follows the
   /// hand.

@@ -11,8 +11,10 @@
 
 namespace vmech {
 
+/// The most channels that a tick may write.
 inline constexpr int kMaxChannels = 32;
 
+/// What a tick is given.
 struct TickInput {
   Posed X_WH;             ///< the hand, as measured; not set where an observer knows it
   bool fresh = false;     ///< false: no new sample, the pose is that of the last tick
@@ -31,12 +33,14 @@ struct TickInput {
   const Vector6d* charged_F_Ho_W = nullptr;
 };
 
+/// What came of a tick.
 enum class TickStatus : std::uint8_t {
   kOk,
   kHeld,    ///< no pose was found for this hand; the last good one stays, and the wrench is sound
   kFailed,  ///< no sound wrench: the loop stops
 };
 
+/// What a tick answers.
 struct TickOutput {
   TickStatus status = TickStatus::kOk;
   Vector6d F_Ho_W = Vector6d::Zero();  ///< what the hand is to feel, about Ho, axes of W

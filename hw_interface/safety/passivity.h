@@ -5,6 +5,7 @@
 
 namespace vmech {
 
+/// How the passivity controller keeps account of energy.
 struct PassivityOptions {
   bool enabled = true;  ///< false: the energy is observed, the wrench left alone
   /// Dissipation that may be kept as credit [J], in [0, 10]. Without a limit a long smooth motion

@@ -35,8 +35,10 @@ enum SafetyStage : std::uint32_t {
   kSlewed = 1u << 3,
   kBraked = 1u << 4,
 };
+/// How many stages there are.
 inline constexpr int kSafetyStages = 5;
 
+/// What the safety filter lets through to the motors.
 struct SafetyOptions {
   double soft_start = 0.5;  ///< ramp from nothing to the whole wrench [s], in [0, 10]
   /// Count what the soft start withholds as carried by somebody else: for a mechanism that moves by
@@ -66,6 +68,7 @@ struct SafetyInput {
   WrenchLimit room = {};               ///< what the device can exert at this posture
 };
 
+/// What the safety filter made of a wrench.
 struct SafetyOutput {
   std::uint64_t sequence = 0;  ///< that the command must carry, so that an echo tells which it was
   Vector6d F_Ho_D = Vector6d::Zero();

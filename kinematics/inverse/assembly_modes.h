@@ -15,6 +15,7 @@ struct HandPose {
   Posed X_WH;
 };
 
+/// What a search for assembly modes holds, and how long it searches.
 struct AssemblyModesOptions {
   /// Velocity indices of single freedoms (not of spherical joints) whose coordinates stay as given.
   std::vector<int> fixed;
@@ -41,6 +42,7 @@ struct AssemblyModesOptions {
   void Validate(const KinematicTree& tree) const;
 };
 
+/// One way in which the loops of a mechanism close.
 struct AssemblyMode {
   VectorXd q;        ///< angles of joints without limits within +-pi
   int found = 0;     ///< from so many of the starts
@@ -50,6 +52,7 @@ struct AssemblyMode {
   bool isolated = true;
 };
 
+/// What a search for assembly modes found.
 struct AssemblyModes {
   std::vector<AssemblyMode>
       modes;  ///< in the order of discovery, the given pose first if it is one

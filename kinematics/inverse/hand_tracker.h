@@ -20,8 +20,10 @@ enum class TrackStatus {
   kLost,        ///< held: the loops did not close, or values are not finite
 };
 
+/// The status in words.
 std::string_view NameOf(TrackStatus status);
 
+/// How closely a hand is followed, and with how much work a target.
 struct TrackOptions {
   InverseKinematicsOptions kinematics;
   /// lambda of paper eq. (8) against the dimensionless hand error [-], 1..1e4. The multiplier
@@ -44,6 +46,7 @@ struct TrackOptions {
   void Validate() const;
 };
 
+/// What became of the targets since the tracker began.
 struct TrackSummary {
   long targets = 0;
   long followed = 0;

@@ -9,6 +9,7 @@
 
 namespace vmech {
 
+/// What the hand's error is measured by, and whether limits hold.
 struct InverseKinematicsOptions {
   RotationError rotation_error = RotationError::kLogarithm;
   /// K, diagonal, along and about the world's axes [N/m, N m/rad], each >= 0. It weighs metres

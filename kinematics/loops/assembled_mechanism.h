@@ -35,6 +35,7 @@ struct AssembledMechanism {
   std::vector<std::string> Notes() const;
 };
 
+/// What AssembleMechanism closes loops by, and what it leaves alone.
 struct AssembleOptions {
   AssemblyOptions closing;
   std::vector<int> fixed_joints;  ///< whose start values stay as given

@@ -7,6 +7,7 @@
 
 namespace vmech {
 
+/// When loops count as closed, and how Assemble gets there.
 struct AssemblyOptions {
   double tolerance = 1e-13;  ///< largest loop error that counts as closed, (0, 1e-3]
   int max_iterations = 200;  ///< more for bad guesses, 1..10000
@@ -26,6 +27,7 @@ struct AssemblyOptions {
   static AssemblyOptions Nearby();
 };
 
+/// What came of closing loops.
 struct AssemblySummary {
   bool closed = false;
   int iterations = 0;

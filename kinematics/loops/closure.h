@@ -62,6 +62,7 @@ void FreeMotions(const TreeWorkspace<T>& ws, DependentSolver<T>* dependents, Mat
 template <typename T>
 void EvaluatePose(const KinematicTree& tree, const T* q, TreeWorkspace<T>* ws,
                   bool with_jacobian = true);
+/// The same of a vector q [nq].
 void EvaluatePose(const KinematicTree& tree, const VectorXd& q, TreeWorkspace<double>* ws,
                   bool with_jacobian = true);
 

@@ -15,6 +15,7 @@ struct CoordinatePartition {
   std::vector<int> dependent_slot;
 };
 
+/// The partition in which `driven` and `idle`, indices in v, are chosen and all others follow.
 CoordinatePartition MakePartition(const KinematicTree& tree, std::vector<int> driven,
                                   std::vector<int> idle);
 

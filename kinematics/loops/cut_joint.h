@@ -21,6 +21,7 @@ struct CutJointFreedoms {
   int count = 0;
   Vector6<T> twist_F[3];
 };
+/// Of the joint at which a loop is cut, in the pose that `state` is of.
 template <typename T>
 CutJointFreedoms<T> FreedomsOfCutJoint(const Loop& loop, const LoopState<T>& state);
 

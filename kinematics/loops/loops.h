@@ -77,6 +77,7 @@ struct LoopOpening {
   double slope = 0;
   int loop = -1;
 };
+/// Of all loops of the tree, at the pose that ws is of.
 template <typename T>
 LoopOpening LargestOpening(const KinematicTree& tree, const TreeWorkspace<T>& ws);
 

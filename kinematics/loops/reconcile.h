@@ -16,6 +16,7 @@ struct Reconciliation {
   VectorXd q;             ///< its closed pose [nq]
 };
 
+/// How far figures may be moved to let loops close.
 struct ReconcileOptions {
   /// Loop errors beyond this are no rounding [characteristic lengths, rad], (0, 0.1].
   double largest_misfit = 3e-3;

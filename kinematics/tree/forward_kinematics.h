@@ -4,6 +4,7 @@
 
 namespace vmech {
 
+/// A column of six for each velocity.
 using Matrix6Xd = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
 /// Poses of all nodes from coordinates q [nq], and the joints' twists; writes X and S. O(n), no
@@ -24,6 +25,7 @@ void ForwardAccelerations(const KinematicTree& tree, const T* vdot, TreeWorkspac
 /// are brought back to unit length.
 template <typename T>
 void MoveCoordinates(const KinematicTree& tree, const T* dv, T* q);
+/// The same of vectors dv [nv] and q [nq].
 void MoveCoordinates(const KinematicTree& tree, const VectorXd& dv, VectorXd* q);
 
 /// The rotation of a unit quaternion (w, x, y, z).
@@ -38,12 +40,14 @@ Posed PoseInWorld(const TreeWorkspace<double>& ws, int node, const Posed& X_BQ);
 /// twists about Qo, [v; w], world axes. Needs X and S.
 void GraspJacobian(const KinematicTree& tree, const TreeWorkspace<double>& ws, int node,
                    const Posed& X_BQ, Matrix6Xd* J);
+/// The same in registers.
 void GraspJacobian(const KinematicTree& tree, const TreeWorkspace<double>& ws, int node,
                    const Frame& Q, std::vector<Screw>* J) noexcept;
 
 /// Twist and acceleration [linear; angular] about the origin of such a frame. Need V; V and A,
 /// which for the ground is that of SetGravity.
 Vector6d GraspTwist(const TreeWorkspace<double>& ws, int node, const Posed& X_BQ);
+/// Acceleration [linear; angular] about the origin of such a frame; needs V and A.
 Vector6d GraspAcceleration(const TreeWorkspace<double>& ws, int node, const Posed& X_BQ);
 
 // Small and everywhere: inline.

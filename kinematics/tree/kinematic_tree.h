@@ -26,6 +26,7 @@ inline int VelocitiesOf(NodeMotion motion) {
   return motion == NodeMotion::kFixed ? 0 : motion == NodeMotion::kSpherical ? 3 : 1;
 }
 
+/// An elementary joint of the tree, and the link behind it.
 struct TreeNode {
   int parent = -1;  ///< index of a node before this one; -1 is the ground
   NodeMotion motion = NodeMotion::kFixed;
@@ -80,6 +81,7 @@ struct Loop {
   std::vector<LoopNode> path;  ///< nodes around the loop, those without a freedom included
 };
 
+/// A mechanism whose loops are cut: a tree of elementary joints, and the loops that close it.
 struct KinematicTree {
   Mechanism mechanism;
   SpanningTree spanning;
@@ -105,12 +107,14 @@ struct KinematicTree {
 /// derivative by one of them along.
 template <typename T>
 struct Design {
+  /// The numbers of a link, in its drawing axes. SI units.
   struct LinkNumbers {
     T mass;
     Vector3<T> p_LoLcm;
     Matrix3<T> I_Lcm;
     std::vector<Pose<T>> X_LA;  ///< anchors
   };
+  /// The numbers of a joint.
   struct JointNumbers {
     T pitch;
     std::array<PassiveOf<T>, 3> passive;  ///< per freedom
@@ -123,18 +127,22 @@ struct Design {
   template <typename S>
   Design<S> cast() const;
 };
+/// The numbers of a joint.
 Design<double>::JointNumbers NumbersOf(const Joint& joint);
+/// The numbers of a mechanism.
 Design<double> DesignOf(const Mechanism& mechanism);
 
 /// The same as nodes and placements have them: the fields of these names there.
 template <typename T>
 struct TreeDesign {
+  /// The numbers of a node: where it stands on its parent, and its mass properties. SI units.
   struct NodeNumbers {
     Pose<T> X_PF, X_BL;
     T pitch = T(0), mass = T(0);
     Vector3<T> p_BoBcm = Vector3<T>::Zero();
     Matrix3<T> I_Bcm = Matrix3<T>::Zero();
   };
+  /// The numbers of a joint's placement on its two links. SI units.
   struct PlacementNumbers {
     Pose<T> X_AF, X_BM;
     T pitch;
@@ -142,6 +150,7 @@ struct TreeDesign {
   std::vector<NodeNumbers> nodes;
   std::vector<PlacementNumbers> placements;
 };
+/// From the numbers of the mechanism that the tree is of.
 template <typename T>
 TreeDesign<T> DesignOfTree(const KinematicTree& tree, const Design<T>& design);
 /// From the fields of the tree.

@@ -29,6 +29,7 @@ struct AnchorMatches {
   std::vector<BodyFrame> unmatched;
   std::vector<std::string> errors;  ///< three anchors of one joint, both on one body
 };
+/// Pairs the frames that name the same joint.
 AnchorMatches MatchAnchors(std::vector<BodyFrame> frames);
 
 /// The nearest frame on another body, free ones before others; none if there is no other.

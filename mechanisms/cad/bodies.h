@@ -17,6 +17,7 @@ struct CadBody {
   std::vector<int> fasteners = {};  ///< those of `parts` that are screws, rivets, pins
 };
 
+/// Which parts of an assembly are one body, as a user says.
 struct BodyOptions {
   /// Subassemblies in which nothing moves, and parts that belong to what they touch.
   std::vector<std::string> rigid;

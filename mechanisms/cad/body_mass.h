@@ -10,6 +10,7 @@
 
 namespace vmech {
 
+/// Of a part whose material nobody names.
 constexpr double kUsualDensity = 7850;  ///< [kg/m^3]: steel
 
 /// Where densities come from, in this order: the user's word for a part, a product, a body or a
@@ -31,6 +32,7 @@ double DensityFromText(const std::string& text);
 /// Mass properties of a body in its axes L, and where they come from, part by part.
 struct BodyMass {
   MassProperties mass_properties;
+  /// A part's share of the mass of a body.
   struct Part {
     int part = -1;  ///< index in CadAssembly
     std::string name;

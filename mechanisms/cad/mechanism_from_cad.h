@@ -35,12 +35,14 @@ struct CadImportOptions {
   bool allow_unmatched = false;  ///< keep anchors without a partner as anchors
 };
 
+/// A link of a mechanism that was made of an assembly.
 struct ImportedBody {
   int link = -1;
   Posed X_WL;  ///< the axes of the link in those of the file, as drawn
   BodyMass mass;
 };
 
+/// A joint of a mechanism that was made of an assembly, and how far off it was drawn.
 struct ImportedJoint {
   int joint = -1;
   bool from_geometry = false;
@@ -75,6 +77,7 @@ struct NearMiss {
   std::string what;  ///< "shaft of 10 mm and bore of 10 mm: axes 0.12 mm apart, 0.1 mm allowed"
 };
 
+/// A mechanism made of an assembly, and how each of its numbers was found.
 struct CadImport {
   std::string file;
   std::string unit;

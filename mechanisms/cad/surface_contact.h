@@ -30,6 +30,7 @@ struct ContactOptions {
 /// The features of a body in world axes: X_PF is then X_WF.
 using WorldFeatures = std::vector<CadFeature>;
 
+/// Two surfaces of an assembly that touch, or nearly.
 struct SurfaceContact {
   CadSurface surface = CadSurface::kPlane;  ///< kShaft in a bore, kBall in a socket, or kPlane
   Vector3d p_W = Vector3d::Zero();          ///< the middle of the contact

@@ -30,6 +30,7 @@ namespace vmech {
 
 enum class DhMotion { kFixed, kRotation, kTranslation, kScrew };
 
+/// A row of a Denavit-Hartenberg table: how the frame at its end lies in that at its beginning.
 struct DhRow {
   std::string axis;  ///< whose axis z of the end frame is: "pin", "ball.ry", "grasp tip", ...
   int from = -1;     ///< row at whose end frame this one begins; -1: the world
@@ -44,6 +45,7 @@ struct DhRow {
   AxesRelation relation = AxesRelation::kCoincident;  ///< of the axes at both ends
 };
 
+/// The Denavit-Hartenberg rows of a mechanism, and where its links and grasps are among them.
 struct DhTable {
   std::vector<DhRow> rows;         ///< each after the one at which it begins
   std::vector<int> row_of_link;    ///< whose end frame is the frame of the link
@@ -51,6 +53,7 @@ struct DhTable {
   std::vector<int> row_of_grasp;   ///< whose end frame is the grasp
 };
 
+/// The rows of all links, cut joints and grasps of a mechanism, along its tree.
 DhTable DeduceDhTable(const Mechanism& mechanism, const SpanningTree& tree);
 
 /// Poses of the end frames of all rows in the world, from the coordinates of all joints as in

@@ -15,6 +15,7 @@ struct ImportedMechanism {
   std::vector<std::string> notes;
 };
 
+/// What a file of another program leaves open.
 struct ImportOptions {
   /// The link that stands still. Empty: the one that is fixed to the world, or else the first; a
   /// note says which was taken.

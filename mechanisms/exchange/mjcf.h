@@ -8,13 +8,13 @@ namespace vmech {
 /// later). Its coordinates are those of the tree joints, counted from the start; a joint with
 /// several freedoms has a hinge or slide for each ("cross.rx", "cross.ry").
 ///
-/// Loops are closed by <equality>, which MuJoCo holds by stiff springs: at spherical joints if
+/// Loops are closed by `<equality>`, which MuJoCo holds by stiff springs: at spherical joints if
 /// there are any, then at revolute ones.
 ///
 ///   cut joint                   here
-///   spherical                   <connect> at its centre
-///   revolute                    two <connect>, a characteristic length apart on its axis
-///   weld                        <weld>
+///   spherical                   `<connect>` at its centre
+///   revolute                    two `<connect>`, a characteristic length apart on its axis
+///   weld                        `<weld>`
 ///   others                      a light carriage on the first link takes up all freedoms but the
 ///                               last turn, and is cut from the second link by one of the above
 ///

@@ -43,12 +43,16 @@ struct Quantity {
   bool radians = false;  ///< a bare number with pi in it: as an angle it counts in radians
 };
 
+/// a + b, of the same dimension. @throws ExpressionError
 template <typename T>
 Quantity<T> Sum(const Quantity<T>& a, const Quantity<T>& b, const CountingUnits& units);
+/// a b, with the product of the units. @throws ExpressionError
 template <typename T>
 Quantity<T> Product(const Quantity<T>& a, const Quantity<T>& b);
+/// a / b, with the ratio of the units. @throws ExpressionError
 template <typename T>
 Quantity<T> Ratio(const Quantity<T>& a, const Quantity<T>& b);
+/// a ^ b, where b has no unit. @throws ExpressionError
 template <typename T>
 Quantity<T> Power(const Quantity<T>& a, const Quantity<T>& b);
 /// A function by its name, of as many arguments as it takes. @throws ExpressionError

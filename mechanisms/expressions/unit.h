@@ -58,6 +58,7 @@ struct NamedUnit {
   std::string symbol;
   double times = 1;
 };
+/// The unit as it is written.
 NamedUnit NameOf(const Unit& unit);
 
 }  // namespace vmech

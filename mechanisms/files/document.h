@@ -145,6 +145,7 @@ class Node {
   int index_ = -1;
 };
 
+/// A text in YAML or JSON, parsed, with the places of its nodes for messages.
 class Document {
  public:
   /// Parses a text; `name` stands for it in messages. Not accepted: text that is not UTF-8 or has

@@ -32,6 +32,7 @@ class FileErrors : public std::runtime_error {
   std::vector<FileError> errors_;
 };
 
+/// The largest file that is read [bytes].
 constexpr size_t kMaxFileBytes = size_t{8} << 20;
 
 /// The whole of a text file. @throws FileErrors if it cannot be read or is larger than allowed.

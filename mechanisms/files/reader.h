@@ -15,9 +15,9 @@ namespace vmech {
 /// Reads a mechanism from a file: YAML or JSON as docs/file-format.md describes it, in any units;
 /// the result is in SI. The anchors of a joint need not coincide in the file: that is the business
 /// of the assembly step, and so is a loop that cannot be closed.
-/// `settings` give parameters of the file other values.
 /// @throws FileErrors with everything that is wrong: what, where, and what to do.
 Mechanism ReadMechanism(const std::filesystem::path& path);
+/// The same with other values of parameters.
 Mechanism ReadMechanism(const std::filesystem::path& path,
                         std::span<const ParameterSetting> settings);
 

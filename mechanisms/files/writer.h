@@ -12,6 +12,7 @@ enum class FileUnits {
   kMillimetresDegrees,  ///< mm, deg, kg, kg mm^2
 };
 
+/// How a mechanism file is written.
 struct WriterOptions {
   FileUnits units = FileUnits::kMetresRadians;
   std::string comment;  ///< lines of text for the head of the file, without '#'; may be empty

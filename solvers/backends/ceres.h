@@ -6,6 +6,7 @@
 
 namespace vmech {
 
+/// How Ceres, which knows no constraints, is made to keep them.
 enum class CeresMethod {
   kWeighted,  ///< constraints as residuals of one weight: biased, as `penalty` is
   kExact,     ///< the same with multiplier updates until the stopping rule is met
@@ -33,6 +34,8 @@ struct CeresOptions {
   void Validate() const;
 };
 
+/// Solves by Ceres from x0; where it ended is judged by `options.stopping`.
+/// @throws std::invalid_argument as Validate.
 Summary Solve(ConstrainedLeastSquares& problem, const CeresOptions& options, const VectorXd& x0);
 
 }  // namespace vmech

@@ -22,6 +22,8 @@ struct IpoptOptions {
   void Validate() const;
 };
 
+/// Solves by Ipopt from x0; where it ended is judged by `options.stopping`.
+/// @throws std::invalid_argument as Validate.
 Summary Solve(ConstrainedLeastSquares& problem, const IpoptOptions& options, const VectorXd& x0);
 
 }  // namespace vmech

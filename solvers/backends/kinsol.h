@@ -26,6 +26,8 @@ struct KinsolOptions {
   void Validate() const;
 };
 
+/// Solves by KINSOL from x0; where it ended is judged by `options.stopping`.
+/// @throws std::invalid_argument as Validate.
 Summary Solve(ConstrainedLeastSquares& problem, const KinsolOptions& options, const VectorXd& x0);
 
 }  // namespace vmech

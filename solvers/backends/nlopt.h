@@ -8,6 +8,7 @@
 
 namespace vmech {
 
+/// The algorithms of NLopt that keep equality constraints.
 enum class NloptMethod {
   kSlsqp,         ///< sequential quadratic programming [Kraft 1994]
   kAuglagLbfgs,   ///< augmented Lagrangian [Birgin & Martinez 2008], L-BFGS inside
@@ -47,6 +48,8 @@ struct NloptOptions {
   void Validate() const;
 };
 
+/// Solves by NLopt from x0; where it ended is judged by `options.stopping`.
+/// @throws std::invalid_argument as Validate.
 Summary Solve(ConstrainedLeastSquares& problem, const NloptOptions& options, const VectorXd& x0);
 
 }  // namespace vmech

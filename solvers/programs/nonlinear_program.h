@@ -25,11 +25,13 @@ class NonlinearProgram {
   int constraints_;
 };
 
+/// The algorithms of NLopt that keep inequality constraints by their slopes.
 enum class ProgramMethod {
   kSlsqp,  ///< sequential quadratic programming [Kraft 1994]
   kMma,    ///< the method of moving asymptotes [Svanberg 2002]
 };
 
+/// How a nonlinear program is solved, and when it counts as solved.
 struct ProgramOptions {
   ProgramMethod method = ProgramMethod::kSlsqp;
   double tolerance = 1e-10;  ///< of f and x, relative

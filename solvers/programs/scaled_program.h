@@ -10,6 +10,7 @@ namespace vmech {
 /// remembers the best point. It is evaluated once where f and g are asked for one after the other.
 class ScaledProgram {
  public:
+  /// The program's values and slopes at one point, in scaled variables.
   struct Point {
     VectorXd u;
     double f = 0;

@@ -51,6 +51,7 @@ struct SlidingContacts {
   const SlidingContact* begin() const { return contacts.data(); }
   const SlidingContact* end() const { return contacts.data() + count; }
 };
+/// The contacts of a joint of a type.
 SlidingContacts ContactsOf(JointType type);
 
 /// The limits f of a joint that carries W_F (about M, axes of F) and moves at `rate`. Of a screw
@@ -58,6 +59,7 @@ SlidingContacts ContactsOf(JointType type);
 template <typename T>
 Vector3<T> FrictionLimits(JointType type, const typename Design<T>::JointNumbers& numbers,
                           const Wrench<T>& W_F, const Vector3<T>& position, const Vector3<T>& rate);
+/// The same of a joint as a file has it.
 Vector3d FrictionLimits(const Joint& joint, const Wrenchd& W_F, const Vector3d& position,
                         const Vector3d& rate);
 

@@ -26,6 +26,7 @@ namespace vmech {
 /// Indices in v of the drives (all free motions, if a hand drives) that stand still at a pose:
 /// their speed is rounding beside the largest of the study, kRest times it.
 std::vector<int> StandingDrives(const LoadModel& model, const Motion& motion, size_t pose);
+/// The share of the largest speed below which a speed is rounding.
 inline constexpr double kRest = 1e-9;
 
 /// Does any drive stand still in the poses that begin with this one, as many as `lanes`?

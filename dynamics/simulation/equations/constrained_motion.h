@@ -15,6 +15,7 @@ struct RateRow {
   int loop = -1;
   int freedom = 0;  ///< of that loop's cut joint
 };
+/// The row of the rate of a freedom.
 RateRow RateRowOf(const KinematicTree& tree, FreedomId at);
 
 /// How a tree with loops can move at one pose, and how forces accelerate it. N are the free

@@ -21,6 +21,7 @@ struct CadVolume {
   Matrix3d moments = Matrix3d::Zero();  ///< integral of (r.r 1 - r r') dV about Pcm [m^5]
 };
 
+/// What a surface of a part may be to a joint.
 enum class CadSurface {
   kShaft,   ///< a cylinder with the material inside
   kBore,    ///< a cylinder with the material outside
@@ -87,6 +88,7 @@ struct CadFrame {
   Posed X_WF;
 };
 
+/// An assembly as a STEP file has it: shapes, parts in groups, named frames. SI units.
 struct CadAssembly {
   std::string file;  ///< for messages
   std::string unit;  ///< of length, as the file names it; empty if it does not

@@ -31,6 +31,7 @@ struct FrameName {
   std::string error;  ///< what is wrong with it ("'hinge' is no type of joint ..."), or empty
 };
 
+/// What the name of a coordinate system says.
 FrameName ParseFrameName(std::string_view name);
 
 /// The type of joint that a word names. None if there is no such type, or if it needs more than a

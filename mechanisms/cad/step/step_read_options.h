@@ -2,6 +2,7 @@
 
 namespace vmech {
 
+/// How a STEP file is read.
 struct StepReadOptions {
   /// Greatest distance of a mesh from the true surface [m], 0 or 1e-7..1. 0: no meshes. Smaller
   /// gives smoother and larger meshes; 1e-4 is good for a viewer.

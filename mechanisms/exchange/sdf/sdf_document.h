@@ -13,6 +13,7 @@ namespace vmech {
 /// that ends up in a mechanism must be there as finite numbers, and every file that is included
 /// must be found.
 struct SdfFile {
+  /// A uri of the text that names another file.
   struct Include {
     size_t begin = 0, end = 0;  ///< bytes of the uri in the text
     int file = -1;              ///< what it names, by index

@@ -18,8 +18,10 @@ struct UrdfLink {
   bool has_inertial = false, has_inertia = false;
 };
 
+/// The types of joints of URDF.
 enum class UrdfJointType { kRevolute, kContinuous, kPrismatic, kPlanar, kFixed, kFloating };
 
+/// A joint as a URDF file has it.
 struct UrdfJoint {
   std::string name, parent, child;
   int line = 0;
@@ -32,6 +34,7 @@ struct UrdfJoint {
   std::string mimics;                 ///< the joint after which it moves; empty: none
 };
 
+/// A robot as a URDF file has it.
 struct UrdfRobot {
   std::string name;
   std::vector<UrdfLink> links;

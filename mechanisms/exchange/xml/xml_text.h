@@ -16,9 +16,9 @@ class XmlText {
 
   void Open(std::string_view tag, const Attributes& attributes = {});
   void Close();
-  /// <tag attributes/>
+  /// Writes `<tag attributes/>`.
   void Element(std::string_view tag, const Attributes& attributes);
-  /// <tag attributes>text</tag>
+  /// Writes `<tag attributes>text</tag>`.
   void Text(std::string_view tag, std::string_view text, const Attributes& attributes = {});
   void Comment(std::string_view text);
 
@@ -36,6 +36,7 @@ std::string XmlEscaped(std::string_view text);
 
 /// Numbers as the shortest decimals that read back as the same, "1 0.5 -2e-06".
 std::string XmlNumber(double value);
+/// Three of them, with blanks between.
 std::string XmlNumbers(const Vector3d& v);
 
 }  // namespace vmech

@@ -7,6 +7,7 @@ namespace vmech {
 
 constexpr int kMaxNesting = 64;  ///< levels of lists and maps in a file
 
+/// What a node of a document is.
 enum class NodeKind { kAbsent, kNull, kScalar, kList, kMap };
 
 /// A node as it is stored; the children of a list or map are indices.
