@@ -158,9 +158,8 @@ void AddHaptic(CLI::App* app, vmech::HapticArguments* haptic) {
       ->required()
       ->type_name("FILE");
   command
-<<<<<<< HEAD
       ->add_option("--grasp", haptic->grasps,
-                   "where it is held (default: the study's, or the first)")
+                   "the grasp by which it is held (default: the study's, or the first)")
       ->type_name("NAME")
       ->allow_extra_args(false);
   command
@@ -170,26 +169,13 @@ void AddHaptic(CLI::App* app, vmech::HapticArguments* haptic) {
       ->allow_extra_args(false)
       ->default_str("simulated");
   command
-      ->add_option("--grip", haptic->grips,
-                   "of the simulated operator: absent, light, relaxed, firm; or of each of two")
+      ->add_option(
+          "--grip", haptic->grips,
+          "grip of the simulated operator: absent, light, relaxed, firm; or of each of two")
       ->type_name("WORD")
       ->allow_extra_args(false)
       ->default_str("relaxed");
-  command->add_option("--rate", haptic->rate, "of the simulated device [Hz]")
-=======
-      ->add_option("--grasp", haptic->grasp,
-                   "the grasp by which it is held (default: the study's, or the first)")
-      ->type_name("NAME");
-  command->add_option("--master", haptic->master, "the device")
-      ->type_name("MASTER")
-      ->capture_default_str();
-  command
-      ->add_option("--grip", haptic->grip,
-                   "grip of the simulated operator: absent, light, relaxed, firm")
-      ->type_name("WORD")
-      ->capture_default_str();
   command->add_option("--rate", haptic->rate, "rate of the simulated device [Hz]")
->>>>>>> h-pages
       ->check(CLI::Range(10.0, 1e5, "10..1e5"))
       ->capture_default_str();
   command->add_option("--seconds", haptic->seconds, "how long [s]; 0: until Ctrl-C")

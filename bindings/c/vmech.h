@@ -63,7 +63,7 @@ typedef struct vmech_pose {
   double rotation[9];
 } vmech_pose;
 
-/* The version of the library, "0.1.0". Its soname changes where a program has to be compiled
+/* The version of the library, "0.2.0". Its soname changes where a program has to be compiled
  * anew. */
 VMECH_API const char* vmech_version(void);
 
