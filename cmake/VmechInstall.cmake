@@ -11,6 +11,7 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/package/vmech-config-vers
 install(FILES ${PROJECT_BINARY_DIR}/package/vmech-config.cmake
               ${PROJECT_BINARY_DIR}/package/vmech-config-version.cmake
         DESTINATION ${VMECH_PACKAGE_DIR})
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/vmech RENAME copyright)
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME vmech)
@@ -20,6 +21,7 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${PROJECT_DESCRIPTION})
 set(CPACK_PACKAGE_FILE_NAME vmech_${PROJECT_VERSION}_${CMAKE_SYSTEM_PROCESSOR})
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
+set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 # The shared libraries that the programs load, as packages: found by dpkg-shlibdeps. What a program
 # compiled against vmech needs beside is what packages.txt lists.

@@ -31,8 +31,7 @@ struct HapticSubject {
 /// first.
 /// @throws FileErrors naming the file and what is wrong; OptionError for an unknown grasp, or one
 /// that two hands are to hold.
-HapticSubject ReadSubject(const std::filesystem::path& file,
-                          const std::vector<std::string>& grasps,
+HapticSubject ReadSubject(const std::filesystem::path& file, const std::vector<std::string>& grasps,
                           const std::vector<std::string>& set = {});
 
 /// How the device's axes lie in the world: its z against gravity (along z if there is none).
