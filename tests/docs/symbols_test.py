@@ -28,7 +28,9 @@ def main():
           ", ".join(f"{number} {kind}s" for kind, number in members.items()))
     if count > MOST_MEMBERS:
         print(f"at most {MOST_MEMBERS} are allowed; document what is new")
-    return 1 if problems or count > MOST_MEMBERS else 0
+    if count == 0:
+        print("the log says nothing of members: it is not that of a whole run")
+    return 1 if problems or not 0 < count <= MOST_MEMBERS else 0
 
 
 if __name__ == "__main__":
