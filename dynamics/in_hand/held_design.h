@@ -39,7 +39,7 @@ Mechanism MechanismWith(const HeldDesign& design, const KinematicTree& tree,
 void Blend(const HeldDesign& from, const HeldDesign& to, double share,
            HeldDesign* between) noexcept;
 
-bool HasSameNumbers(const HeldDesign& a, const HeldDesign& b);
+bool HasSameNumbers(const HeldDesign& a, const HeldDesign& b);  ///< all but `values`
 
 /// How far a frame of `to` is from the same of `from` at most [m]; a rotation counts as the way of
 /// a point at the characteristic length.
