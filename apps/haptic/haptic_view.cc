@@ -30,8 +30,10 @@ Json Figure(const char* name, double value, const char* unit) {
   return {{"name", name}, {"value", value}, {"unit", unit}};
 }
 
+}  // namespace
+
 /// The loop, for a page that watches.
-class Subject : public PageSubject {
+class HapticView::Subject : public PageSubject {
  public:
   Subject(const KinematicTree& tree, ShownTick* tick, const Runner& runner, LiveVariation variation)
       : tree_(tree),
@@ -136,8 +138,6 @@ class Subject : public PageSubject {
   std::mutex mutex_;
   std::string state_;
 };
-
-}  // namespace
 
 struct HapticView::Parts {
   Parts(const KinematicTree& tree, ShownTick* tick, const Runner& runner, LiveVariation variation)

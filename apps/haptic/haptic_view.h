@@ -29,6 +29,7 @@ class HapticView {
   std::string url() const;
 
  private:
+  class Subject;
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };
