@@ -15,13 +15,13 @@ class FadingWrench {
   /// Of springs of a stiffness K, zero rows included, in steps of T [s].
   FadingWrench(const Screw& stiffness, double rate, double step);
 
-  void Add(const Screw& w) noexcept;
+  void Add(const Screw& w) noexcept;  ///< one more that fades
   /// A step in which it acts on what moves away from its other end with V.
   void Step(const Screw& V) noexcept;
 
-  bool acts() const noexcept;
-  const Screw& w() const noexcept { return w_; }
-  double energy() const noexcept;  ///< [J]
+  bool acts() const noexcept;                     ///< it has not faded yet
+  const Screw& w() const noexcept { return w_; }  ///< what is left of it
+  double energy() const noexcept;                 ///< [J]
 
  private:
   Screw w_, compliance_;

@@ -15,14 +15,14 @@ namespace vmech {
 struct HeldDesign {
   /// Of the freedom of a node.
   struct FreedomNumbers {
-    Passive passive;
+    Passive passive;              ///< spring and friction
     double lower = 0, upper = 0;  ///< limits; none are infinite
   };
   VectorXd values;  ///< of the parameters that the design was made for; blended with the rest
-  TreeDesign<double> tree;
-  std::vector<FreedomNumbers> freedoms;  ///< of every node of the tree
-  Vector3d gravity_W = Vector3d::Zero();
-  std::vector<GraspFrame> grasps;  ///< where hands hold it, a frame for each
+  TreeDesign<double> tree;                ///< of nodes and anchors
+  std::vector<FreedomNumbers> freedoms;   ///< of every node of the tree
+  Vector3d gravity_W = Vector3d::Zero();  ///< [m/s^2]
+  std::vector<GraspFrame> grasps;         ///< where hands hold it, a frame for each
 };
 
 /// `grasps`: of the mechanism, by index.

@@ -26,7 +26,7 @@ class SuddenEvents {
   void Start(double time, VectorXd* y);
   /// The next step, from this state, is looked at.
   void LookAround(double time, const VectorXd& y);
-
+  /// When something happens, and what.
   struct Found {
     double time = 0;
     bool changes = false;   ///< what rests or is closed: Pass goes on from there

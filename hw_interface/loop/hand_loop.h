@@ -13,25 +13,25 @@
 #include "vmech/hw_interface/safety/safety_filter.h"
 
 namespace vmech {
-
+/// How a loop treats a hand and its device.
 struct HandLoopOptions {
-  SafetyOptions safety;
+  SafetyOptions safety;          ///< of the wrenches that are sent
   HandObserverOptions observer;  ///< where the device is an arm that states itself
-  PostureOptions posture;
-  bool gripper = false;        ///< hold only while the gripper is closed, where it is sensed
-  bool joint_torques = true;   ///< where the device takes them; else wrenches
-  bool uses_observed = false;  ///< the tick goes by what an observer knows
-  int command_life = 5;        ///< periods after which the device drops a command by itself
+  PostureOptions posture;        ///< of an arm with more joints than it needs
+  bool gripper = false;          ///< hold only while the gripper is closed, where it is sensed
+  bool joint_torques = true;     ///< where the device takes them; else wrenches
+  bool uses_observed = false;    ///< the tick goes by what an observer knows
+  int command_life = 5;          ///< periods after which the device drops a command by itself
   Matrix3d R_WD = Matrix3d::Identity();  ///< the device's axes in the mechanism's world
 };
 
 /// What came of a hand in a run; every figure was measured here.
 struct HandSummary {
-  std::string device;
-  ForceOff cause = ForceOff::kNone;  ///< of a fault, or of a link that was lost
-  std::uint64_t missed = 0;          ///< ticks without a new sample
-  std::uint64_t grasps = 0;          ///< how often the hand took hold
-  SafetyCounters safety;
+  std::string device;                      ///< by its name
+  ForceOff cause = ForceOff::kNone;        ///< of a fault, or of a link that was lost
+  std::uint64_t missed = 0;                ///< ticks without a new sample
+  std::uint64_t grasps = 0;                ///< how often the hand took hold
+  SafetyCounters safety;                   ///< how often the filter acted
   double peak_force = 0, peak_moment = 0;  ///< sent [N], [N m]
   double least_energy = 0;                 ///< of the passivity observer [J]
 
@@ -50,7 +50,7 @@ class HandLoop {
   bool registered() const noexcept { return registered_; }
   /// The first sample is here, and the hand is to be registered where the grasp frame is.
   bool arrives() const noexcept { return fresh_ && !registered_; }
-  void Register(const Posed& X_WG) noexcept;
+  void Register(const Posed& X_WG) noexcept;  ///< lays the handle over it
   /// What the tick is told. `hand`: of the tick. The input refers to this.
   TickInput Prepare(int hand, Tick* tick, HandRecord* record) noexcept VMECH_NONBLOCKING;
   /// Of a hand that has not come yet, or is lost.
@@ -60,11 +60,13 @@ class HandLoop {
   /// Through the filter to the device.
   void Send(std::int64_t slot_ns, double stored_energy, HandRecord* record) noexcept;
 
-  ForceOff latched() const noexcept { return safety_.latched(); }
+  ForceOff latched() const noexcept {
+    return safety_.latched();
+  }  ///< why no force is sent any more
   /// Nothing is heard of it any more: the hand has let go for good.
   bool lost() const noexcept { return latched() == ForceOff::kLinkLost; }
-  Master& master() const noexcept { return *master_; }
-  HandSummary Summary() const;
+  Master& master() const noexcept { return *master_; }  ///< as given
+  HandSummary Summary() const;                          ///< of the run so far
 
  private:
   void Observe() noexcept;

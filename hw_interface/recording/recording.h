@@ -14,7 +14,7 @@ namespace vmech {
 
 /// The hand as an observer knew it, in D.
 struct RecordedHand {
-  Posed X_DH;
+  Posed X_DH;                        ///< the handle in the device
   Vector6d V_DH = Vector6d::Zero();  ///< [v; w] of Ho and H, axes of D
 
   static RecordedHand Of(const MovingFrame& hand_D) noexcept;
@@ -23,18 +23,18 @@ struct RecordedHand {
 
 /// A hand in one tick of a haptic loop.
 struct HandRecord {
-  MasterState state;
+  MasterState state;                          ///< what the device sent
   Vector6d wanted_F_Ho_D = Vector6d::Zero();  ///< of the virtual mechanism
   Vector6d sent_F_Ho_D = Vector6d::Zero();    ///< after the safety filter
-  IoStatus io = IoStatus::kOk;
-  ForceOff off = ForceOff::kNotActive;
-  std::uint32_t stages = 0;   ///< bits of SafetyStage
-  double energy = 0;          ///< the passivity observer's [J]
-  bool observed = false;      ///< the tick went by `hand` in place of the sample
-  RecordedHand hand;          ///< of an observer
-  Registration registration;  ///< of the handle in the world
-  WrenchLimit room;           ///< what the device could exert at this posture
-  double stored_energy = 0;   ///< that the virtual side says it has, see passivity.h [J]
+  IoStatus io = IoStatus::kOk;                ///< of reading it
+  ForceOff off = ForceOff::kNotActive;        ///< why no force was sent
+  std::uint32_t stages = 0;                   ///< bits of SafetyStage
+  double energy = 0;                          ///< the passivity observer's [J]
+  bool observed = false;                      ///< the tick went by `hand` in place of the sample
+  RecordedHand hand;                          ///< of an observer
+  Registration registration;                  ///< of the handle in the world
+  WrenchLimit room;                           ///< what the device could exert at this posture
+  double stored_energy = 0;  ///< that the virtual side says it has, see passivity.h [J]
 };
 
 /// Everything about one tick of a haptic loop; of several hands, the first is the record itself.

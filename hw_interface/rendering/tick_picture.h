@@ -9,8 +9,8 @@ namespace vmech {
 
 /// A hand on a mechanism. World axes, SI.
 struct HandPicture {
-  Posed X_WH, X_WG;  ///< the hand and the grasp frame
-  bool holds = true;
+  Posed X_WH, X_WG;                        ///< the hand and the grasp frame
+  bool holds = true;                       ///< the hand has not let go
   Vector6d F_Ho_W = Vector6d::Zero();      ///< what the hand is to feel, about Ho
   Vector6d dynamic = Vector6d::Zero();     ///< w_d: moves the mechanism, about Go
   Vector6d constraint = Vector6d::Zero();  ///< w_c: what the mechanism does not allow, about Go

@@ -20,11 +20,11 @@ class DesignPath {
   template <typename Change>
   bool Advance(const Change& change) noexcept;
 
-  const HeldDesign& now() const noexcept { return now_; }
-  bool arrived() const noexcept { return share_ >= 1; }
+  const HeldDesign& now() const noexcept { return now_; }  ///< what the mechanism has
+  bool arrived() const noexcept { return share_ >= 1; }    ///< at the design that it goes to
   /// The loops do not close where it would go on, at this pose.
   bool stopped() const noexcept { return stopped_; }
-  bool moves() const noexcept { return !arrived() && !stopped_; }
+  bool moves() const noexcept { return !arrived() && !stopped_; }  ///< it is under way
 
  private:
   static constexpr double kLongest = 0.02;   // step, of a way: fifty take the way to its end

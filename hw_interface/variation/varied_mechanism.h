@@ -13,7 +13,7 @@ namespace vmech {
 
 /// A number of a mechanism file's block `parameters` that a designer may move.
 struct LiveParameter {
-  std::string name, unit;
+  std::string name, unit;       ///< as the file has them
   double value = 0;             ///< in the unit, as the file was read
   double lower = 0, upper = 0;  ///< between which it may be moved: half and twice the value, or one
                                 ///< unit to either side of zero
@@ -78,7 +78,7 @@ class DesignGuide {
   /// The design to go to from there; none if it is on its way, or where it is asked to be.
   std::optional<HeldDesign> Next(const Progress& progress);
 
-  const VectorXd& asked() const { return asked_; }
+  const VectorXd& asked() const { return asked_; }  ///< values of the parameters
   /// Why it goes no further than it has come; empty: nothing is refused.
   const std::string& refusal() const { return refusal_; }
 
