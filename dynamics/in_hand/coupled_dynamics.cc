@@ -202,7 +202,8 @@ CoupledStatus CoupledDynamics::Step() noexcept {
 /// What hands that have let go still pull.
 void CoupledDynamics::Fade() noexcept {
   for (int i = 0; i < hands(); ++i) {
-    hands_[i].fading.Step(pose_.Twist(v_, i) - hands_[i].at.V);
+    FadingWrench& fading = hands_[i].fading;
+    if (fading.acts()) fading.Step(pose_.Twist(v_, i) - hands_[i].at.V);
   }
 }
 
