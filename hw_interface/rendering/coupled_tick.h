@@ -108,12 +108,12 @@ class CoupledTick : public Tick {
     double paid_when_held = 0;  // P of EnergyShares, then [J]
   };
 
-  void TakeHand(const TickInput& input, int hand) noexcept;
+  void TakeHand(const TickInput& input, int i) noexcept;
   void ReadHand(const TickInput& input, Hand* hand) noexcept;
   CoupledStatus Move() noexcept;
   void ShareEnergy(std::span<const TickInput> inputs) noexcept;
   double EnergyOfHands() const noexcept { return dynamics_.Energy() - dynamics_.design_work(); }
-  double StoredEnergy(bool held, int hand) noexcept;
+  double StoredEnergy(bool held, int i) noexcept;
   void Account(CoupledStatus status, std::span<double> channels) noexcept;
 
   const KinematicTree& tree_;
