@@ -4,12 +4,14 @@ Usage: batches.py SIZE SOURCE...     prints a line `NUMBER SOURCE` for each sour
 
 Much of the time of a source goes into headers and into templates that its neighbours instantiate
 as well; a batch pays for them once. A source that says a name which another defines for itself
-alone, in its unnamed namespace, is not put into the batch of the other, where it could mean either.
+alone, in its unnamed namespace, is not put into the batch of the other, where it could mean either;
+nor is one that has a name for itself which a header of the other declares.
 Sources in namespaces side by side (vmech::units_test, vmech::writer_test) do not see each other's
 names. What stands alone is not printed.
 """
 
 import dataclasses
+import functools
 import pathlib
 import re
 import sys
@@ -26,6 +28,35 @@ SCOPE = re.compile(r"^namespace ([\w:]+) \{$", re.MULTILINE)
 SAID = re.compile(r"(?<![.:>])\b(?:[A-Z]|k[A-Z])\w*")  # not members, nor variables
 UNSAID = re.compile(r'//.*|"(?:\\.|[^"\\\n])*"')  # comments and strings
 MAIN = re.compile(r"^int (main)\(", re.MULTILINE)
+INCLUDED = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+
+
+@functools.cache
+def included_by(path):
+    """The project's headers that a file includes itself: "vmech/base/x.h" is base/x.h."""
+    names = [name.removeprefix("vmech/") for name in INCLUDED.findall(path.read_text())]
+    places = (ROOT, ROOT / "tests", path.parent)
+    found = (next(filter(pathlib.Path.is_file, (place / name for place in places)), None)
+             for name in names)
+    return {header for header in found if header}
+
+
+def with_included_headers(source):
+    """The source and the project's headers that it includes, directly or not."""
+    found, waiting = set(), [source]
+    while waiting:
+        path = waiting.pop()
+        if path not in found:
+            found.add(path)
+            waiting += included_by(path)
+    return found
+
+
+@functools.cache
+def names_in(path):
+    """The names that a file says, outside of comments and strings."""
+    return frozenset(SAID.findall(UNSAID.sub("", path.read_text())))
 
 
 def hidden_names(text):
@@ -42,19 +73,25 @@ class Source:
     scope: str  # the namespace of its definitions
     hidden: set  # names of its own
     said: set  # names of its own and what else it calls by a name
+    given: set  # names that its headers say, which go with its own
+
+    def meets(self, other):
+        """Whether the other says a name of this source's own, or has a header that does."""
+        return bool(self.hidden & other.said or self.hidden & (other.given - self.given))
 
     def clashes(self, other):
         """Whether a name of one's own is said in the other, where it is visible."""
         nested = (f"{self.scope}::".startswith(f"{other.scope}::")
                   or f"{other.scope}::".startswith(f"{self.scope}::"))
-        return nested and bool(self.hidden & other.said or other.hidden & self.said)
+        return nested and (self.meets(other) or other.meets(self))
 
 
 def read_source(path):
     text = path.read_text()
     scope, hidden = SCOPE.search(text), hidden_names(text)
-    said = set(SAID.findall(UNSAID.sub("", text)))
-    return Source(path, scope[1] if scope else "", hidden, hidden | said)
+    headers = with_included_headers(path) - {path}
+    return Source(path, scope[1] if scope else "", hidden, hidden | names_in(path),
+                  set().union(*map(names_in, headers)))
 
 
 def batches_of(paths, size):
@@ -72,7 +109,7 @@ def batches_of(paths, size):
 
 
 def main():
-    paths = [pathlib.Path(path) for path in sys.argv[2:]]
+    paths = [pathlib.Path(path).absolute() for path in sys.argv[2:]]
     batches = [batch for batch in batches_of(paths, int(sys.argv[1])) if len(batch) > 1]
     for number, batch in enumerate(batches):
         for path in batch:
