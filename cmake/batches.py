@@ -5,7 +5,7 @@ Usage: batches.py SIZE SOURCE...     prints a line `NUMBER SOURCE` for each sour
 Much of the time of a source goes into headers and into templates that its neighbours instantiate
 as well; a batch pays for them once. A source that says a name which another defines for itself
 alone, in its unnamed namespace, is not put into the batch of the other, where it could mean either;
-nor is one that has a name for itself which a header of the other declares.
+nor is one that has a name for itself which a header of the other gives.
 Sources in namespaces side by side (vmech::units_test, vmech::writer_test) do not see each other's
 names. What stands alone is not printed.
 """
@@ -23,6 +23,7 @@ AT_MARGIN = re.compile(r"^(?!//|#|\}|template)\S.*$", re.MULTILINE)
 DEFINED = re.compile(r"^(?:struct|class|enum class|using) (\w+)"
                      r"|[\w>&*] ([A-Za-z]\w*)(?:\[.*\])?(?:\(| = |\{|;)"
                      r"|, ([A-Za-z]\w*)(?: = |\{)", re.MULTILINE)
+ONE_LINE = re.compile(r"^template <.*> (?=struct|class)", re.MULTILINE)
 ALIAS = re.compile(r"namespace|using (?!\w+ = )")  # of the same in every source
 SCOPE = re.compile(r"^namespace ([\w:]+) \{$", re.MULTILINE)
 SAID = re.compile(r"(?<![.:>])\b(?:[A-Z]|k[A-Z])\w*")  # not members, nor variables
@@ -53,17 +54,21 @@ def with_included_headers(source):
     return found
 
 
-@functools.cache
-def names_in(path):
-    """The names that a file says, outside of comments and strings."""
-    return frozenset(SAID.findall(UNSAID.sub("", path.read_text())))
+def defined_at_margin(text):
+    """Names that are defined, or declared, at the left margin."""
+    lines = [line for line in AT_MARGIN.findall(text) if not ALIAS.match(line)]
+    return {name for names in DEFINED.findall("\n".join(lines)) for name in names if name}
 
 
 def hidden_names(text):
     """Names of what only this source sees, by which it may clash with others."""
-    lines = AT_MARGIN.findall("".join(HIDDEN.findall(text)))
-    defined = DEFINED.findall("\n".join(line for line in lines if not ALIAS.match(line)))
-    return {name for names in defined for name in names if name} | set(MAIN.findall(text))
+    return defined_at_margin("".join(HIDDEN.findall(text))) | set(MAIN.findall(text))
+
+
+@functools.cache
+def names_given(header):
+    """The names that a header gives to whoever includes it."""
+    return frozenset(defined_at_margin(ONE_LINE.sub("", header.read_text())))
 
 
 @dataclasses.dataclass
@@ -73,10 +78,10 @@ class Source:
     scope: str  # the namespace of its definitions
     hidden: set  # names of its own
     said: set  # names of its own and what else it calls by a name
-    given: set  # names that its headers say, which go with its own
+    given: set  # names that its headers give, which go with its own
 
     def meets(self, other):
-        """Whether the other says a name of this source's own, or has a header that does."""
+        """Whether the other says a name of this source's own, or has a header that gives it."""
         return bool(self.hidden & other.said or self.hidden & (other.given - self.given))
 
     def clashes(self, other):
@@ -89,9 +94,10 @@ class Source:
 def read_source(path):
     text = path.read_text()
     scope, hidden = SCOPE.search(text), hidden_names(text)
+    said = set(SAID.findall(UNSAID.sub("", text)))
     headers = with_included_headers(path) - {path}
-    return Source(path, scope[1] if scope else "", hidden, hidden | names_in(path),
-                  set().union(*map(names_in, headers)))
+    return Source(path, scope[1] if scope else "", hidden, hidden | said,
+                  set().union(*map(names_given, headers)))
 
 
 def batches_of(paths, size):
