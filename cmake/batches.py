@@ -65,10 +65,18 @@ def hidden_names(text):
     return defined_at_margin("".join(HIDDEN.findall(text))) | set(MAIN.findall(text))
 
 
+def scope_of(text):
+    """The namespace of a file's definitions."""
+    scope = SCOPE.search(text)
+    return scope[1] if scope else ""
+
+
 @functools.cache
 def names_given(header):
-    """The names that a header gives to whoever includes it."""
-    return frozenset(defined_at_margin(ONE_LINE.sub("", header.read_text())))
+    """The names that a header gives to whoever includes it, and their namespace."""
+    text = header.read_text()
+    return frozenset((scope_of(text), name)
+                     for name in defined_at_margin(ONE_LINE.sub("", text)))
 
 
 @dataclasses.dataclass
@@ -78,25 +86,26 @@ class Source:
     scope: str  # the namespace of its definitions
     hidden: set  # names of its own
     said: set  # names of its own and what else it calls by a name
-    given: set  # names that its headers give, which go with its own
+    given: set  # names that its headers give, with their namespaces
 
     def meets(self, other):
         """Whether the other says a name of this source's own, or has a header that gives it."""
-        return bool(self.hidden & other.said or self.hidden & (other.given - self.given))
+        visible = (f"{self.scope}::".startswith(f"{other.scope}::")
+                   or f"{other.scope}::".startswith(f"{self.scope}::"))
+        own = {(self.scope, name) for name in self.hidden}
+        return visible and bool(self.hidden & other.said) or bool(own & (other.given - self.given))
 
     def clashes(self, other):
-        """Whether a name of one's own is said in the other, where it is visible."""
-        nested = (f"{self.scope}::".startswith(f"{other.scope}::")
-                  or f"{other.scope}::".startswith(f"{self.scope}::"))
-        return nested and (self.meets(other) or other.meets(self))
+        """Whether a name of one's own means something in the other, where it is visible."""
+        return self.meets(other) or other.meets(self)
 
 
 def read_source(path):
     text = path.read_text()
-    scope, hidden = SCOPE.search(text), hidden_names(text)
+    hidden = hidden_names(text)
     said = set(SAID.findall(UNSAID.sub("", text)))
     headers = with_included_headers(path) - {path}
-    return Source(path, scope[1] if scope else "", hidden, hidden | said,
+    return Source(path, scope_of(text), hidden, hidden | said,
                   set().union(*map(names_given, headers)))
 
 
