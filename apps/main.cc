@@ -13,6 +13,7 @@
 #include "vmech/apps/commands.h"
 #include "vmech/apps/common_options.h"
 #include "vmech/apps/completion.h"
+#include "vmech/apps/console/number_within.h"
 #include "vmech/apps/console/option_error.h"
 #include "vmech/apps/console/printable_streams.h"
 #include "vmech/apps/console/suggestion.h"
@@ -149,7 +150,7 @@ constexpr const char* kHapticHelp =
     "  replay:FILE     a recorded hand\n"
     "  udp:HOST:PORT   a device on another machine\n"
     "  spacenav        a 6-axis mouse behind spacenavd, without force\n"
-    "  plugin:LIBRARY[:PARAMETERS]  a driver with the C entry point of hw_interface/plugin.h\n"
+    "  plugin:LIBRARY[:PARAMETERS]  your own driver, a shared library (docs/device-plugin.md)\n"
     "Ctrl-C ends it with the motors off. After a fault the last ticks are in <file>-fault.csv.";
 
 void AddHaptic(CLI::App* app, vmech::HapticArguments* haptic) {
@@ -176,10 +177,10 @@ void AddHaptic(CLI::App* app, vmech::HapticArguments* haptic) {
       ->allow_extra_args(false)
       ->default_str("relaxed");
   command->add_option("--rate", haptic->rate, "rate of the simulated device [Hz]")
-      ->check(CLI::Range(10.0, 1e5, "10..1e5"))
+      ->check(vmech::NumberWithin(10.0, 1e5, "10..1e5"))
       ->capture_default_str();
   command->add_option("--seconds", haptic->seconds, "how long [s]; 0: until Ctrl-C")
-      ->check(CLI::Range(0.0, 1e6, "0..1e6"))
+      ->check(vmech::NumberWithin(0.0, 1e6, "0..1e6"))
       ->capture_default_str();
   command
       ->add_option("--coupling", haptic->coupling,
@@ -191,16 +192,16 @@ void AddHaptic(CLI::App* app, vmech::HapticArguments* haptic) {
       ->add_option(
           "--scale", haptic->scale,
           "force felt over the mechanism's own (default: 1, or what the device can render)")
-      ->check(CLI::Range(1e-6, 1.0, "1e-6..1"));
+      ->check(vmech::NumberWithin(1e-6, 1.0, "1e-6..1"));
   command
       ->add_option("--stiffness", haptic->stiffness,
                    "paper: stiffness of the constraint [N/m] (default, and at most: what the "
                    "device can render)")
-      ->check(CLI::Range(0.0, 1e7, "0..1e7"));
+      ->check(vmech::NumberWithin(0.0, 1e7, "0..1e7"));
   command
       ->add_option("--inertia", haptic->inertia,
                    "paper: share of the inertia that is felt (default: what the device can render)")
-      ->check(CLI::Range(0.0, 1.0, "0..1"));
+      ->check(vmech::NumberWithin(0.0, 1.0, "0..1"));
   command
       ->add_option("--contact", haptic->contact,
                    "paper: law of the constraint: linear, viscoelastic or hunt-crossley")
@@ -228,7 +229,7 @@ void AddHaptic(CLI::App* app, vmech::HapticArguments* haptic) {
       ->add_option("--record", haptic->record,
                    "write every tick to this file while it runs: .mcap, else CSV")
       ->type_name("FILE");
-  command->add_flag("--force", haptic->force, "write over an old recording");
+  command->add_flag("--force", haptic->force, "write over an old recording")->needs("--record");
   vmech::AddSet(command, &haptic->set);
   vmech::AddTolerance(command, &haptic->tolerance);
   command->add_flag("--free", haptic->free_running,
@@ -240,7 +241,8 @@ constexpr const char* kViewHelp =
     "Shows a mechanism in the browser: any link can be dragged with the mouse, joints have "
     "sliders,\n"
     "and the load of every joint is shown. The motion of a study or of a result folder is played,\n"
-    "and a recording of `vmech haptic` runs again. The page is served on this machine alone\n"
+    "and so is a recording of `vmech haptic`, beside what its audit says. The page is served on "
+    "this machine alone\n"
     "(127.0.0.1), at an address with a random token.";
 
 void AddView(CLI::App* app, vmech::ViewArguments* view) {
@@ -280,7 +282,7 @@ void AddReplay(CLI::App* app, vmech::ReplayArguments* replay) {
       ->add_option("--record", replay->record,
                    "write the session anew, in the newest format: .mcap, else CSV")
       ->type_name("FILE");
-  command->add_flag("--force", replay->force, "write over an old recording");
+  command->add_flag("--force", replay->force, "write over an old recording")->needs("--record");
   command->add_flag("--audit", replay->audit,
                     "compute from the recording alone whether its numbers hold");
   command->add_flag("--view", replay->view,

@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "vmech/apps/console/number_within.h"
+
 namespace vmech {
 namespace {
 
@@ -19,7 +21,7 @@ void AddWorkspace(CLI::App* command, HapticArguments* haptic) {
       ->add_option("--motion-scale", haptic->motion_scale,
                    "motion of the mechanism over motion of the handle; forces go the other way, so "
                    "that power stays the same")
-      ->check(CLI::Range(0.01, 100.0, "0.01..100"))
+      ->check(NumberWithin(0.01, 100.0, "0.01..100"))
       ->capture_default_str();
   command
       ->add_option("--clutch", haptic->clutch,
@@ -38,6 +40,7 @@ void AddWorkspace(CLI::App* command, HapticArguments* haptic) {
           "draw the handle to this place before it takes hold, in the axes of the device [m]")
       ->delimiter(',')
       ->expected(3)
+      ->check(NumberWithin(-100, 100, "-100..100"))
       ->type_name("X,Y,Z");
 }
 
@@ -45,7 +48,7 @@ void AddDevice(CLI::App* app, DeviceArguments* device) {
   CLI::App* command = app->add_subcommand("device", kDeviceHelp);
   command->add_option("MASTER", device->master, "the device")->required()->type_name("MASTER");
   command->add_option("--rate", device->rate, "rate of the simulated device [Hz]")
-      ->check(CLI::Range(10.0, 1e5, "10..1e5"))
+      ->check(NumberWithin(10.0, 1e5, "10..1e5"))
       ->capture_default_str();
   CLI::Option* identify = command->add_flag(
       "--identify", device->identify,
@@ -53,12 +56,12 @@ void AddDevice(CLI::App* app, DeviceArguments* device) {
   command
       ->add_option("--force", device->force,
                    "largest force on the handle [N] (default: a quarter of the peak, at most 2)")
-      ->check(CLI::Range(0.01, 100.0, "0.01..100"))
+      ->check(NumberWithin(0.01, 100.0, "0.01..100"))
       ->needs(identify);
   command
       ->add_option("--peak-to", device->peak_to,
                    "find the peak by short blows that rise to this force [N]")
-      ->check(CLI::Range(0.01, 1000.0, "0.01..1000"))
+      ->check(NumberWithin(0.01, 1000.0, "0.01..1000"))
       ->needs(identify);
   CLI::Option* serve =
       command

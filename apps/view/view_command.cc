@@ -15,6 +15,7 @@
 #include "vmech/apps/console/option_error.h"
 #include "vmech/apps/files/file_kind.h"
 #include "vmech/apps/files/parameter_options.h"
+#include "vmech/apps/haptic/recording_page.h"
 #include "vmech/apps/loads/named_study.h"
 #include "vmech/apps/report/motion_scene.h"
 #include "vmech/apps/view/json_text.h"
@@ -132,6 +133,11 @@ void ViewStudy(const ViewArguments& arguments) {
                  file.mechanism_path, arguments, same, std::move(design));
 }
 
+void ViewStill(std::string text, const ViewArguments& arguments) {
+  StillPage page(std::move(text));
+  Serve(&page, arguments, [](double) {});
+}
+
 /// A folder of `vmech loads` holds the scene in its report.
 void ViewResults(const ViewArguments& arguments) {
   const fs::path report = arguments.file / "report.html";
@@ -144,8 +150,7 @@ void ViewResults(const ViewArguments& arguments) {
   }
   const size_t end = text.find("</script>", begin);
   const std::string scene = text.substr(begin + kBegin.size(), end - begin - kBegin.size());
-  StillPage page(ViewPage(arguments.file.filename().string(), scene));
-  Serve(&page, arguments, [](double) {});
+  ViewStill(ViewPage(arguments.file.filename().string(), scene), arguments);
 }
 
 }  // namespace
@@ -167,12 +172,9 @@ int RunView(const ViewArguments& arguments) {
     case FileKind::kUnknown:
       ViewMechanism(arguments);
       break;
-    case FileKind::kRecording: {
-      ReplayArguments replay;
-      replay.recording = arguments.file;
-      replay.view = true;
-      return RunReplay(replay);
-    }
+    case FileKind::kRecording:
+      ViewStill(ReadRecordingFor("view", arguments.file, RecordingPage), arguments);
+      break;
     default:
       RefuseOtherKinds(kTaken, arguments.file);
   }
