@@ -19,7 +19,7 @@
 #include "vmech/hw_interface/rendering/coupled_tick.h"
 #include "vmech/hw_interface/rendering/coupling_choice.h"
 
-namespace vmech {
+namespace vmech::sane_sessions_test {
 namespace {
 
 constexpr int kShards = 4;
@@ -194,4 +194,4 @@ INSTANTIATE_TEST_SUITE_P(Examples, SmallDevices, testing::ValuesIn(HeldBySmallDe
 INSTANTIATE_TEST_SUITE_P(Shards, SaneSessions, testing::Range(0, kShards));
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::sane_sessions_test
