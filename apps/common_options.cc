@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "vmech/apps/console/number_within.h"
 #include "vmech/mechanisms/mechanism.h"
 
 namespace vmech {
@@ -11,7 +12,7 @@ void AddTolerance(CLI::App* command, std::optional<double>* tolerance) {
       ->add_option("--tolerance", *tolerance,
                    "how far rounded figures may keep loops from closing, in rad and parts of the "
                    "mechanism's length (default: that of the mechanism file, or 1e-4)")
-      ->check(CLI::Range(0.0, kWidestTolerance, "0..0.01"))
+      ->check(NumberWithin(0.0, kWidestTolerance, "0..0.01"))
       ->type_name("NUMBER");
 }
 

@@ -22,10 +22,9 @@
 #include "vmech/apps/haptic/haptic_session.h"
 #include "vmech/apps/haptic/haptic_view.h"
 #include "vmech/apps/haptic/interrupt_scope.h"
+#include "vmech/apps/haptic/recording_page.h"
 #include "vmech/apps/haptic/session_recording.h"
 #include "vmech/dynamics/in_hand/passive_joints.h"
-#include "vmech/hw_interface/audit/audit.h"
-#include "vmech/hw_interface/audit/felt.h"
 #include "vmech/hw_interface/audit/promise.h"
 #include "vmech/hw_interface/audit/recorded_tree.h"
 #include "vmech/hw_interface/loop/replay_master.h"
@@ -272,18 +271,6 @@ int Hold(const HeldMechanism& held, const HapticArguments& arguments, const Mast
   return summary.status == RunStatus::kFault ? kNoSolution : kSuccess;
 }
 
-/// @throws FileErrors: a recording that cannot be read is bad input.
-template <typename Read>
-auto ReadInput(const std::filesystem::path& file, const Read& read) {
-  return ReadAs({"replay", {FileKind::kRecording}}, file, [&](const std::filesystem::path& path) {
-    try {
-      return read(path);
-    } catch (const std::runtime_error& error) {
-      throw FileErrors({{error.what(), 0, 0, "", "a recording of `vmech haptic` is wanted"}});
-    }
-  });
-}
-
 /// The arguments that made a recording. @throws std::invalid_argument if it does not say.
 HapticArguments ArgumentsOf(const Recording& recording, const ReplayArguments& replay) {
   HapticArguments arguments;
@@ -331,30 +318,12 @@ HapticArguments ArgumentsOf(const Recording& recording, const ReplayArguments& r
   return arguments;
 }
 
-std::string StateOf(const RecordingReader& reader) {
-  std::string text;
-  if (!reader.complete()) text += "note: the recording was cut short: it has no last line\n";
-  if (reader.lost() > 0) text += fmt::format("note: {} ticks are missing in it\n", reader.lost());
-  return text;
-}
-
 /// Looks at every number of a recording.
 int Audit(const std::filesystem::path& file) {
   RecordingReader reader(file);
-  const RecordedTree held(reader.header());
-  RecordingAudit audit(reader.header());
-  FeltFit felt(reader.header(), held);
-  const bool one_hand = reader.header().hands() == 1;
-  TickRecord tick = reader.header().EmptyTick();
-  while (reader.Next(&tick)) {
-    audit.Take(tick);
-    if (one_hand) felt.Take(tick);
-  }
-  const AuditReport report = audit.Report();
-  const FeltReport told = felt.Report();
-  const std::string of_the_hand = one_hand ? told.Text() + told.Verdict() : "";
-  fmt::print("{}{}{}", report.Text(), of_the_hand, StateOf(reader));
-  return report.sound() ? kSuccess : kNoSolution;
+  const AuditedRecording audited = AuditRecording(&reader);
+  fmt::print("{}{}{}", audited.report.Text(), audited.felt, audited.state);
+  return audited.report.sound() ? kSuccess : kNoSolution;
 }
 
 /// A grasp for every device.
@@ -366,9 +335,36 @@ void RequireGraspsForMasters(const HapticArguments& arguments) {
                                   arguments.grasps.size(), hands, hands == 1 ? "" : "s"));
   }
   if (arguments.grips.size() > hands) {
-    throw OptionError(fmt::format("--grip: {} given for {} device{}", arguments.grips.size(), hands,
-                                  hands == 1 ? "" : "s"));
+    throw OptionError(fmt::format("--grip: {} given for {} device{}; give one for each --master",
+                                  arguments.grips.size(), hands, hands == 1 ? "" : "s"));
   }
+}
+
+/// What the virtual coupling does not know is not passed over in silence.
+void RequireOptionsOfCoupling(const HapticArguments& arguments) {
+  if (arguments.coupling == "paper") return;
+  const HapticArguments plain;
+  const std::pair<const char*, bool> of_the_paper[] = {
+      {"--stiffness", arguments.stiffness != plain.stiffness},
+      {"--inertia", arguments.inertia != plain.inertia},
+      {"--contact", arguments.contact != plain.contact},
+      {"--estimator", arguments.estimator != plain.estimator},
+      {"--wrench", arguments.wrench != plain.wrench}};
+  for (const auto& [option, given] : of_the_paper) {
+    if (!given) continue;
+    throw OptionError(fmt::format(
+        "{}: counts in the paper's way alone; add --coupling paper, or leave it out", option));
+  }
+}
+
+/// What the scaled motion makes of a device's force is one that a filter can hold.
+void RequireBearable(const DeviceInfo& device) {
+  constexpr double kMost = 1e4;  // [N], of SafetyOptions
+  if (device.linear.peak <= kMost) return;
+  throw OptionError(
+      fmt::format("--motion-scale: makes {:.4g} N of the largest force of {}, more than {:g} N; "
+                  "give a larger one",
+                  device.linear.peak, device.name, kMost));
 }
 
 /// Nothing is written over what a session reads.
@@ -387,6 +383,7 @@ void RequireRecordApart(const HapticArguments& arguments) {
 int RunHaptic(const HapticArguments& arguments) {
   RequireRecordApart(arguments);
   RequireGraspsForMasters(arguments);
+  RequireOptionsOfCoupling(arguments);
   const WorkspaceOptions workspace = WorkspaceOf(arguments);
   HeldMechanism held(arguments);
   const std::unique_ptr<LoopClock> clock = ClockOf(arguments);
@@ -402,13 +399,14 @@ int RunHaptic(const HapticArguments& arguments) {
       BringHome(master.get(), clock.get(), Vector3d(arguments.home.data()));
     }
     masters.push_back(InWorkspace(workspace, std::move(master)));
+    RequireBearable(masters.back()->info());
     held.FitTo(masters.back()->info(), i, arguments.quiet);
   }
   return Hold(held, arguments, masters, clock.get());
 }
 
 int RunReplay(const ReplayArguments& replay) {
-  if (replay.audit) return ReadInput(replay.recording, Audit);
+  if (replay.audit) return ReadRecordingFor("replay", replay.recording, Audit);
   std::vector<std::filesystem::path> outputs;
   for (const std::filesystem::path& output : {replay.record, replay.motion}) {
     if (!output.empty()) outputs.push_back(output);
@@ -416,7 +414,7 @@ int RunReplay(const ReplayArguments& replay) {
   std::vector<std::filesystem::path> inputs{replay.recording};
   if (!replay.file.empty()) inputs.push_back(replay.file);
   RequireOutputsApart(inputs, outputs);
-  const Recording recording = ReadInput(replay.recording, [](const std::filesystem::path& file) {
+  const Recording recording = ReadRecordingFor("replay", replay.recording, [](const auto& file) {
     return ReadRecording(file, RecordingPart::kSamples);
   });
   if (!recording.complete && !replay.quiet) {

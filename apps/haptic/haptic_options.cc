@@ -2,6 +2,7 @@
 
 #include "vmech/apps/commands.h"
 #include "vmech/apps/common_options.h"
+#include "vmech/apps/console/number_within.h"
 
 namespace vmech {
 namespace {
@@ -17,7 +18,7 @@ constexpr const char* kHapticHelp =
     "  replay:FILE     a recorded hand\n"
     "  udp:HOST:PORT   a device on another machine\n"
     "  spacenav        a 6-axis mouse behind spacenavd, without force\n"
-    "  plugin:LIBRARY[:PARAMETERS]  a driver with the C entry point of hw_interface/plugin.h\n"
+    "  plugin:LIBRARY[:PARAMETERS]  your own driver, a shared library (docs/device-plugin.md)\n"
     "Ctrl-C ends it with the motors off. After a fault the last ticks are in <file>-fault.csv.";
 
 constexpr const char* kReplayHelp =
@@ -40,7 +41,7 @@ void AddWorkspace(CLI::App* command, HapticArguments* haptic) {
       ->add_option("--motion-scale", haptic->motion_scale,
                    "motion of the mechanism over motion of the handle; forces go the other way, so "
                    "that power stays the same")
-      ->check(CLI::Range(0.01, 100.0, "0.01..100"))
+      ->check(NumberWithin(0.01, 100.0, "0.01..100"))
       ->capture_default_str();
   command
       ->add_option("--clutch", haptic->clutch,
@@ -59,6 +60,7 @@ void AddWorkspace(CLI::App* command, HapticArguments* haptic) {
           "draw the handle to this place before it takes hold, in the axes of the device [m]")
       ->delimiter(',')
       ->expected(3)
+      ->check(NumberWithin(-100, 100, "-100..100"))
       ->type_name("X,Y,Z");
 }
 
@@ -88,10 +90,10 @@ void AddHaptic(CLI::App* app, HapticArguments* haptic) {
       ->allow_extra_args(false)
       ->default_str("relaxed");
   command->add_option("--rate", haptic->rate, "rate of the simulated device [Hz]")
-      ->check(CLI::Range(10.0, 1e5, "10..1e5"))
+      ->check(NumberWithin(10.0, 1e5, "10..1e5"))
       ->capture_default_str();
   command->add_option("--seconds", haptic->seconds, "how long [s]; 0: until Ctrl-C")
-      ->check(CLI::Range(0.0, 1e6, "0..1e6"))
+      ->check(NumberWithin(0.0, 1e6, "0..1e6"))
       ->capture_default_str();
   command
       ->add_option("--coupling", haptic->coupling,
@@ -103,16 +105,16 @@ void AddHaptic(CLI::App* app, HapticArguments* haptic) {
       ->add_option(
           "--scale", haptic->scale,
           "force felt over the mechanism's own (default: 1, or what the device can render)")
-      ->check(CLI::Range(1e-6, 1.0, "1e-6..1"));
+      ->check(NumberWithin(1e-6, 1.0, "1e-6..1"));
   command
       ->add_option("--stiffness", haptic->stiffness,
                    "paper: stiffness of the constraint [N/m] (default, and at most: what the "
                    "device can render)")
-      ->check(CLI::Range(0.0, 1e7, "0..1e7"));
+      ->check(NumberWithin(0.0, 1e7, "0..1e7"));
   command
       ->add_option("--inertia", haptic->inertia,
                    "paper: share of the inertia that is felt (default: what the device can render)")
-      ->check(CLI::Range(0.0, 1.0, "0..1"));
+      ->check(NumberWithin(0.0, 1.0, "0..1"));
   command
       ->add_option("--contact", haptic->contact,
                    "paper: law of the constraint: linear, viscoelastic or hunt-crossley")
@@ -140,7 +142,7 @@ void AddHaptic(CLI::App* app, HapticArguments* haptic) {
       ->add_option("--record", haptic->record,
                    "write every tick to this file while it runs: .mcap, else CSV")
       ->type_name("FILE");
-  command->add_flag("--force", haptic->force, "write over an old recording");
+  command->add_flag("--force", haptic->force, "write over an old recording")->needs("--record");
   AddSet(command, &haptic->set);
   AddTolerance(command, &haptic->tolerance);
   command->add_flag("--free", haptic->free_running,
@@ -161,7 +163,7 @@ void AddReplay(CLI::App* app, ReplayArguments* replay) {
       ->add_option("--record", replay->record,
                    "write the session anew, in the newest format: .mcap, else CSV")
       ->type_name("FILE");
-  command->add_flag("--force", replay->force, "write over an old recording");
+  command->add_flag("--force", replay->force, "write over an old recording")->needs("--record");
   command->add_flag("--audit", replay->audit,
                     "compute from the recording alone whether its numbers hold");
   command->add_flag("--view", replay->view,
@@ -173,7 +175,7 @@ void AddDevice(CLI::App* app, DeviceArguments* device) {
   CLI::App* command = app->add_subcommand("device", kDeviceHelp);
   command->add_option("MASTER", device->master, "the device")->required()->type_name("MASTER");
   command->add_option("--rate", device->rate, "rate of the simulated device [Hz]")
-      ->check(CLI::Range(10.0, 1e5, "10..1e5"))
+      ->check(NumberWithin(10.0, 1e5, "10..1e5"))
       ->capture_default_str();
   CLI::Option* identify = command->add_flag(
       "--identify", device->identify,
@@ -181,12 +183,12 @@ void AddDevice(CLI::App* app, DeviceArguments* device) {
   command
       ->add_option("--force", device->force,
                    "largest force on the handle [N] (default: a quarter of the peak, at most 2)")
-      ->check(CLI::Range(0.01, 100.0, "0.01..100"))
+      ->check(NumberWithin(0.01, 100.0, "0.01..100"))
       ->needs(identify);
   command
       ->add_option("--peak-to", device->peak_to,
                    "find the peak by short blows that rise to this force [N]")
-      ->check(CLI::Range(0.01, 1000.0, "0.01..1000"))
+      ->check(NumberWithin(0.01, 1000.0, "0.01..1000"))
       ->needs(identify);
   CLI::Option* serve =
       command

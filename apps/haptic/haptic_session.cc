@@ -22,6 +22,7 @@
 #include "vmech/hw_interface/masters/spacenav_master.h"
 #include "vmech/hw_interface/recording/recording_file.h"
 #include "vmech/hw_interface/remote/udp_master.h"
+#include "vmech/hw_interface/remote/udp_socket.h"
 #include "vmech/hw_interface/rendering/coupling_choice.h"
 #include "vmech/hw_interface/rendering/hand_motion.h"
 #include "vmech/hw_interface/rendering/paper_choice.h"
@@ -91,7 +92,25 @@ std::unique_ptr<Master> MakeUdp(const std::string& address) {
   options.device.host = address.substr(0, colon);
   const std::string port = colon == std::string::npos ? "" : address.substr(colon + 1);
   options.device.port = PortOf(port, "udp:HOST:PORT", "udp:" + address);
+  try {
+    ToSockaddr(options.device);
+  } catch (const std::invalid_argument& error) {
+    throw OptionError(fmt::format("--master: {}", error.what()));
+  }
   return std::make_unique<UdpMaster>(options);
+}
+
+/// "LIBRARY[:PARAMETERS]"; a file in this folder needs no "./" before it.
+std::unique_ptr<Master> MakePlugin(const std::string& word) {
+  const std::size_t colon = word.find(':');
+  const std::string parameters = colon == std::string::npos ? "" : word.substr(colon + 1);
+  std::filesystem::path library = word.substr(0, colon);
+  if (library.empty()) {
+    throw OptionError(fmt::format("--master: plugin:LIBRARY[:PARAMETERS] is meant, not {}",
+                                  Quoted("plugin:" + word)));
+  }
+  if (std::filesystem::exists(library)) library = std::filesystem::absolute(library);
+  return UsingFile("--master", [&] { return std::make_unique<PluginMaster>(library, parameters); });
 }
 
 std::string ScaleReport(double scale, double wanted) {
@@ -119,18 +138,25 @@ Rendering MakeCoupled(const RenderingRequest& request, const KinematicTree& tree
   CoupledTickOptions options;
   const double period = hands.front().device->period;
   options.smoothing = 2 * period;
+  const auto choose = [&](const RenderedHand& hand, double scale) {
+    return ChooseCoupling(tree, GraspFrameOf(tree, hand.grasp), q, *hand.device, options.smoothing,
+                          scale);
+  };
+  options.scale = request.scale;
+  if (request.scale == 0) {
+    options.scale = 1;
+    for (const RenderedHand& hand : hands) {
+      options.scale = std::min(options.scale, choose(hand, 0).scale);
+    }
+  }
   std::vector<CoupledHand> coupled;
   std::string report;
-  double bearable = 1;
   for (RenderedHand& hand : hands) {
-    const CouplingChoice choice =
-        ChooseCoupling(tree, GraspFrameOf(tree, hand.grasp), q, *hand.device, options.smoothing);
+    const CouplingChoice choice = choose(hand, options.scale);
     coupled.push_back({hand.grasp, choice.coupling});
     hand.safety = choice.Safety();
-    bearable = std::min(bearable, choice.scale);
     report += CouplingReport(choice);
   }
-  options.scale = request.scale > 0 ? request.scale : bearable;
   report += ScaleReport(options.scale, request.scale);
   for (size_t i = 0; i < hands.size(); ++i) {
     hands[i].promise = {true, false, options.scale, 1,
@@ -189,8 +215,8 @@ Rendering MakePaper(const RenderingRequest& request, const KinematicTree& tree,
   report += fmt::format("; weight at the hand {:.3g} N\n", choice.weight.head<3>().norm());
   report += ScaleReport(options.scale, request.scale);
   SessionPromise promise{true, true, options.scale, 1, {}};
-  promise.coupling.stiffness = options.law.stiffness;
-  promise.coupling.damping = options.law.damping;
+  promise.coupling.stiffness = options.law.stiffness / options.scale;
+  promise.coupling.damping = options.law.damping / options.scale;
   if (tree.mechanism.grasps[grasp].kind == GraspKind::kPoint) {
     promise.coupling.stiffness.tail<3>().setZero();
     promise.coupling.damping.tail<3>().setZero();
@@ -277,13 +303,7 @@ std::unique_ptr<Master> MakeMaster(const MasterRequest& request) {
         UsingFile("--master", [&] { return ReadRecording(*file); }));
   }
   if (const auto address = AfterMark(word, "udp:")) return MakeUdp(*address);
-  if (const auto library = AfterMark(word, "plugin:")) {
-    const std::size_t colon = library->find(':');
-    const std::string parameters = colon == std::string::npos ? "" : library->substr(colon + 1);
-    return UsingFile("--master", [&] {
-      return std::make_unique<PluginMaster>(library->substr(0, colon), parameters);
-    });
-  }
+  if (const auto plugin = AfterMark(word, "plugin:")) return MakePlugin(*plugin);
   throw OptionError(
       fmt::format("--master: {} is not one of simulated, haply[:PORT], spacenav, replay:FILE, "
                   "udp:HOST:PORT, plugin:LIBRARY[:PARAMETERS]",

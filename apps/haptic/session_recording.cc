@@ -71,7 +71,7 @@ void SessionRecording::RequireWritten() const {
 
 std::string SessionRecording::Report() const {
   const FeltReport felt = felt_.Report();
-  std::string text = tells_felt_ ? felt.Text() + felt.Verdict() : "";
+  std::string text = tells_felt_ ? felt.Text() + "  verdict: " + felt.Verdict() + "\n" : "";
   if (!file_.empty()) {
     text += fmt::format("  recorded {} ticks, lost {}{}\n", recorder_->written(), recorder_->lost(),
                         recorder_->lost() > 0 ? ": the disk was too slow for the session" : "");

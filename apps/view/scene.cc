@@ -192,6 +192,50 @@ Json MotionOf(const Scene& scene) {
   return motion;
 }
 
+Json AuditOf(const RecordedMotion& recorded) {
+  Json charts = Json::array(), findings = Json::array();
+  for (const RecordedMotion::Chart& chart : recorded.charts) {
+    Json series = Json::array();
+    for (const RecordedMotion::Series& one : chart.series) {
+      series.push_back({{"name", one.name}, {"values", Base64Of(one.values)}});
+    }
+    charts.push_back({{"title", chart.title}, {"unit", chart.unit}, {"series", std::move(series)}});
+  }
+  for (const RecordedMotion::Finding& finding : recorded.findings) {
+    findings.push_back({{"what", finding.what},
+                        {"unit", finding.unit},
+                        {"worst", finding.worst},
+                        {"bound", finding.bound},
+                        {"sound", finding.sound}});
+  }
+  return {
+      {"words", recorded.words}, {"findings", std::move(findings)}, {"charts", std::move(charts)}};
+}
+
+/// The first hand has an arrow of its own, others are loads.
+Json RecordedMotionOf(const RecordedMotion& recorded, const Mechanism& mechanism) {
+  const std::string times = Base64Of(recorded.times);
+  Json motion{{"times", times},
+              {"cycle", 0},
+              {"axis", {{"label", "time"}, {"unit", "s"}, {"values", times}}},
+              {"poses", Base64Of(recorded.poses)},
+              {"coordinates", Base64Of(recorded.coordinates)},
+              {"wrenches", Base64Of(recorded.wrenches)},
+              {"loads", Json::array()},
+              {"audit", AuditOf(recorded)}};
+  for (const RecordedMotion::Hand& hand : recorded.hands) {
+    const Grasp& grasp = mechanism.grasps[static_cast<size_t>(hand.grasp)];
+    const std::string wrenches = Base64Of(hand.wrenches);
+    if (!motion.contains("hand")) {
+      motion["hand"] = {{"grasp", hand.grasp}, {"wrenches", wrenches}};
+    } else {
+      motion["loads"].push_back(
+          {{"link", grasp.link}, {"point", ArrayOf(grasp.X_LG.p)}, {"wrenches", wrenches}});
+    }
+  }
+  return motion;
+}
+
 /// The characters that could end an element or begin one, as escapes of JSON.
 std::string WithoutMarkup(const std::string& json) {
   std::string text;
@@ -254,6 +298,7 @@ std::string SceneJson(const Scene& scene) {
                               {"point", grasp.kind == GraspKind::kPoint}});
   }
   if (scene.loads != nullptr) json["motion"] = MotionOf(scene);
+  if (scene.recorded != nullptr) json["motion"] = RecordedMotionOf(*scene.recorded, mechanism);
   if (!scene.session.empty()) {
     json["session"] = {{"socket", "/socket"}, {"kind", scene.session}};
     if (!scene.parameters.empty()) json["session"]["parameters"] = Json::parse(scene.parameters);

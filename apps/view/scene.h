@@ -20,6 +20,35 @@ struct SceneAxis {
   std::vector<Mark> dead_centres;
 };
 
+/// A motion that was recorded, in rows, and what an audit of it has found.
+struct RecordedMotion {
+  struct Series {
+    std::string name;
+    std::vector<float> values;  ///< of every row
+  };
+  struct Chart {
+    std::string title, unit;
+    std::vector<Series> series;
+  };
+  struct Finding {
+    std::string what, unit;
+    double worst, bound;
+    bool sound;
+  };
+  struct Hand {
+    int grasp;
+    std::vector<float> wrenches;  ///< on the mechanism, about the grasp frame's origin, in W
+  };
+  std::vector<double> times;       ///< [s], of every row
+  std::vector<float> poses;        ///< of every link, as SevenOf
+  std::vector<float> coordinates;  ///< of every freedom
+  std::vector<float> wrenches;     ///< of every joint
+  std::vector<Hand> hands;
+  std::vector<Chart> charts;
+  std::vector<Finding> findings;
+  std::vector<std::string> words;  ///< what was found: first the verdict
+};
+
 /// What the page is to show: a mechanism at its start and, if they are there, a motion and a
 /// session.
 struct Scene {
@@ -30,6 +59,7 @@ struct Scene {
   const LoadStudy* study = nullptr;
   const LoadStudyResult* loads = nullptr;
   SceneAxis axis;
+  const RecordedMotion* recorded = nullptr;  ///< instead of these
   /// Of a session: "mechanism" or "haptic"; empty: none.
   std::string session;
   std::string parameters;  ///< of a session whose design is varied: LiveDesign::Sliders, as text

@@ -17,6 +17,7 @@
 #include "vmech/apps/console/option_error.h"
 #include "vmech/apps/files/file_kind.h"
 #include "vmech/apps/files/parameter_options.h"
+#include "vmech/apps/haptic/recording_page.h"
 #include "vmech/apps/loads/named_study.h"
 #include "vmech/apps/report/motion_scene.h"
 #include "vmech/apps/view/json_text.h"
@@ -34,7 +35,8 @@ constexpr const char* kViewHelp =
     "Shows a mechanism in the browser: any link can be dragged with the mouse, joints have "
     "sliders,\n"
     "and the load of every joint is shown. The motion of a study or of a result folder is played,\n"
-    "and a recording of `vmech haptic` runs again. The page is served on this machine alone\n"
+    "and so is a recording of `vmech haptic`, beside what its audit says. The page is served on "
+    "this machine alone\n"
     "(127.0.0.1), at an address with a random token.";
 
 namespace fs = std::filesystem;
@@ -141,6 +143,11 @@ void ViewStudy(const ViewArguments& arguments) {
                  file.mechanism_path, arguments, same, std::move(design));
 }
 
+void ViewStill(std::string text, const ViewArguments& arguments) {
+  StillPage page(std::move(text));
+  Serve(&page, arguments, [](double) {});
+}
+
 /// A folder of `vmech loads` holds the scene in its report.
 void ViewResults(const ViewArguments& arguments) {
   const fs::path report = arguments.file / "report.html";
@@ -153,8 +160,7 @@ void ViewResults(const ViewArguments& arguments) {
   }
   const size_t end = text.find("</script>", begin);
   const std::string scene = text.substr(begin + kBegin.size(), end - begin - kBegin.size());
-  StillPage page(ViewPage(arguments.file.filename().string(), scene));
-  Serve(&page, arguments, [](double) {});
+  ViewStill(ViewPage(arguments.file.filename().string(), scene), arguments);
 }
 
 }  // namespace
@@ -193,12 +199,9 @@ int RunView(const ViewArguments& arguments) {
     case FileKind::kUnknown:
       ViewMechanism(arguments);
       break;
-    case FileKind::kRecording: {
-      ReplayArguments replay;
-      replay.recording = arguments.file;
-      replay.view = true;
-      return RunReplay(replay);
-    }
+    case FileKind::kRecording:
+      ViewStill(ReadRecordingFor("view", arguments.file, RecordingPage), arguments);
+      break;
     default:
       RefuseOtherKinds(kTaken, arguments.file);
   }

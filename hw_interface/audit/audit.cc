@@ -354,6 +354,18 @@ void RecordingAudit::Take(const TickRecord& tick) {
   parts_->Take(tick);
 }
 
+bool RecordingAudit::started() const {
+  return parts_->started;
+}
+
+const EnergyBalance& RecordingAudit::energy() const {
+  return parts_->energy;
+}
+
+double RecordingAudit::closure() const {
+  return parts_->before.closure;
+}
+
 AuditReport RecordingAudit::Report() const {
   const Parts& p = *parts_;
   AuditReport report;
@@ -366,12 +378,18 @@ AuditReport RecordingAudit::Report() const {
   }
   report.findings.push_back(p.grasp.finding());
   if (p.promise.known) {
-    report.findings.push_back(p.stored.finding());
     report.findings.push_back(p.wanted.finding());
   } else {
     report.left_out = "stored energy and wanted wrench: the recording does not say what was felt";
   }
-  if (!p.promise.paper) report.findings.push_back(p.newton.finding());
+  if (p.promise.paper) {
+    report.left_out =
+        "energies and links: in the paper's way the place of the hand moves the mechanism, no "
+        "force";
+    return report;
+  }
+  if (p.promise.known) report.findings.push_back(p.stored.finding());
+  report.findings.push_back(p.newton.finding());
   const double share = p.energy.gained / std::max(p.energy.throughput, 1e-6);
   report.findings.push_back(
       {"energy from nowhere, share of the hand's work", share, kEnergyGain, "-", p.ticks});
@@ -390,15 +408,22 @@ std::string AuditReport::Text() const {
                         f.unit == "-" ? "" : f.unit, f.bound,
                         f.sound() ? "" : fmt::format("   NOT SOUND, tick {}", f.tick));
   }
-  text += fmt::format(
-      "  energy: the hand did {:.4g} J on the mechanism; {:.4g} J went into motion, {:.4g} J into "
-      "height, {:.4g} J into springs, friction and limits of joints, {:.4g} J were lost in time "
-      "steps; constraints did {:.2g} J along free motions\n",
-      energy.hand, energy.kinetic, energy.weight, energy.joints, energy.lost, energy.constraint);
+  text += fmt::format("  energy: {}\n", energy.Text());
   if (!left_out.empty()) text += fmt::format("  not judged: {}\n", left_out);
-  text += sound() ? "verdict: sound, every number agrees with the mechanism\n"
-                  : "verdict: not sound, these numbers are not those of this mechanism\n";
-  return text;
+  return text + fmt::format("verdict: {}\n", Verdict());
+}
+
+std::string AuditReport::Verdict() const {
+  return sound() ? "sound, every number agrees with the mechanism"
+                 : "not sound, these numbers are not those of this mechanism";
+}
+
+std::string EnergyBalance::Text() const {
+  return fmt::format(
+      "the hand did {:.4g} J on the mechanism; {:.4g} J went into motion, {:.4g} J into height, "
+      "{:.4g} J into springs, friction and limits of joints, {:.4g} J were lost in time steps; "
+      "constraints did {:.2g} J along free motions",
+      hand, kinetic, weight, joints, lost, constraint);
 }
 
 }  // namespace vmech

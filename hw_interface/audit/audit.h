@@ -29,6 +29,8 @@ struct EnergyBalance {
   double gained = 0;      ///< most that the time steps ever had given
   double throughput = 0;  ///< work of the hand without regard to its sign
   double constraint = 0;  ///< work of the constraints along the motions that they leave free
+
+  std::string Text() const;  ///< a line
 };
 
 /// What an audit of a recording found.
@@ -39,7 +41,8 @@ struct AuditReport {
   std::string left_out;  ///< what could not be judged and why; may be empty
 
   bool sound() const;
-  std::string Text() const;  ///< lines with figures, and a verdict
+  std::string Verdict() const;  ///< a sentence
+  std::string Text() const;     ///< lines with figures, and the verdict
 };
 
 /// Computes anew, from a recording alone, what it says of the mechanism: energy, closure of the
@@ -55,6 +58,11 @@ class RecordingAudit : public TickListener {
 
   void Take(const TickRecord& tick) override;
   AuditReport Report() const;
+
+  // After a tick.
+  bool started() const;                 ///< a hand has had the mechanism
+  const EnergyBalance& energy() const;  ///< until now
+  double closure() const;               ///< of the loops, lengths over the mechanism's
 
  private:
   struct Parts;

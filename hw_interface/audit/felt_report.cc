@@ -80,7 +80,7 @@ std::string FeltReport::Verdict() const {
   if (stages[2] * 100 > ticks)
     words += "; the device was at its largest in " + Share(stages[2], ticks);
   if (without * 100 > ticks) words += "; no force in " + Share(without, ticks) + " of the time";
-  return "  verdict: " + words + "\n";
+  return words;
 }
 
 }  // namespace vmech

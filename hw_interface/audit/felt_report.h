@@ -34,7 +34,7 @@ struct FeltReport {
   std::array<std::uint64_t, kSafetyStages> stages{};  ///< ticks in which each changed the force
 
   std::string Text() const;     ///< figures, each beside what was promised
-  std::string Verdict() const;  ///< a sentence or two
+  std::string Verdict() const;  ///< a sentence
 };
 
 }  // namespace vmech

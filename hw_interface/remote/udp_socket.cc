@@ -17,7 +17,8 @@ sockaddr_in ToSockaddr(const UdpAddress& address) {
   if (address.port < 0 || address.port > 65535 ||
       inet_pton(AF_INET, address.host.c_str(), &out.sin_addr) != 1) {
     throw std::invalid_argument(
-        fmt::format("udp: '{}:{}' is not a numeric IPv4 address and a port in [0, 65535]",
+        fmt::format("udp: '{}:{}' is not a numeric IPv4 address and a port in [0, 65535]; this "
+                    "machine is 127.0.0.1, another has an address in the network",
                     address.host, address.port));
   }
   out.sin_port = htons(static_cast<std::uint16_t>(address.port));

@@ -22,6 +22,8 @@ constexpr double kPhase = 0.7;     // w_d times the loop's delay [rad]
 constexpr double kDampingRatio = 0.4;
 constexpr double kJerk = 20;    // [m/s^2]: what a step of the encoders may do to the handle
 constexpr double kLever = 0.1;  // [m], of a hand that turns
+constexpr double kLeastScale = 1e-6;
+constexpr double kStiffest = 1e8;  // [N/m], at the mechanism, beyond what its inertia needs
 
 /// Basis of C v = 0 [nv, mobility].
 MatrixXd AllowedMotions(const KinematicTree& tree, TreeWorkspace<double>* ws) {
@@ -33,11 +35,28 @@ MatrixXd AllowedMotions(const KinematicTree& tree, TreeWorkspace<double>* ws) {
 }
 
 /// w_d: as fast as hold, delay and filter let a handle swing on the coupling, and no faster than
-/// the steps of its encoders allow, w^2 D <= kJerk.
+/// the steps of its encoders allow, w^2 D <= kJerk, and than a brisk hand may change the force.
 double FastestRate(const DeviceInfo& device, double smoothing) {
+  constexpr double kBrisk = 0.15, kOfPeak = 0.1;  // [m/s]; of the peak in a tick
   const double by_delay = kPhase / (0.5 * device.period + device.delay + smoothing);
   const double step = std::max(device.linear.resolution, kLever * device.angular.resolution);
-  return step > 0 ? std::min(by_delay, std::sqrt(kJerk / step)) : by_delay;
+  const double by_step = step > 0 ? std::sqrt(kJerk / step) : by_delay;
+  const double stiffest = kOfPeak * device.linear.peak / (kBrisk * device.period);
+  const double by_peak = stiffest > 0 ? std::sqrt(stiffest / device.linear.mass) : by_delay;
+  return std::min({by_delay, by_step, by_peak});
+}
+
+/// w_q: what a step of the encoders pulls by spring and damper is kQuiet of the peak. Zero where
+/// the device states no peak or no steps.
+double QuietRate(const DeviceInfo& device, double smoothing) {
+  constexpr double kQuiet = 0.02;
+  const HandlePhysics& handle = device.linear;
+  const double step = handle.mass * handle.resolution;
+  if (step == 0) return 0;
+  // step (w^2 + 2 b w) = kQuiet peak, with the share of the step that the filter takes for speed.
+  const double share = 1 - std::exp(-device.period / smoothing);
+  const double b = kDampingRatio * share / device.period;
+  return std::sqrt(b * b + kQuiet * handle.peak / step) - b;
 }
 
 double UnseenWork(const DeviceInfo& device) {
@@ -123,6 +142,15 @@ void WithoutMoments(const DeviceInfo& device, HandCoupling* coupling) {
   coupling->damping.tail<3>().setZero();
 }
 
+/// Of the handle's masses D at the rate w.
+HandCoupling CouplingAt(double rate, const Vector6d& D, const DeviceInfo& device) {
+  HandCoupling coupling;
+  coupling.stiffness = rate * rate * D;
+  coupling.damping = 2 * kDampingRatio * rate * D;
+  WithoutMoments(device, &coupling);
+  return coupling;
+}
+
 }  // namespace
 
 SafetyOptions CouplingChoice::Safety() const {
@@ -138,30 +166,30 @@ SafetyOptions CouplingChoice::Safety() const {
 }
 
 CouplingChoice ChooseCoupling(const KinematicTree& tree, const GraspFrame& grasp, const VectorXd& q,
-                              const DeviceInfo& device, double smoothing) {
+                              const DeviceInfo& device, double smoothing, double scale) {
   CouplingChoice choice;
   choice.inertia_ratio = RatioAlongThePath(tree, grasp, q, device);
   if (choice.inertia_ratio == 0) {
     choice.coupling = SoftCoupling(device);
+    if (scale > 0) choice.scale = scale;
     WithoutMoments(device, &choice.coupling);
     return choice;
   }
-  const double fastest = FastestRate(device, smoothing);
-  const double wanted = kFaithful * std::sqrt(choice.inertia_ratio);
-  const double rate = std::min(kMargin * wanted, fastest);
   const Vector6d D = HandleMasses(grasp, device);
-  choice.coupling.stiffness = rate * rate * D;
-  choice.coupling.damping = 2 * kDampingRatio * rate * D;
+  const double fastest = FastestRate(device, smoothing);
+  const double faithful = kFaithful * std::sqrt(choice.inertia_ratio);
+  const double unscaled = kMargin * faithful;
+  choice.weight = WeightAtHand(tree, grasp, q, CouplingAt(std::min(unscaled, fastest), D, device));
+  choice.unseen_work = UnseenWork(device);
+  const double by_inertia = std::pow(fastest / faithful, 2);
+  const double by_weight = 0.5 * OrInfinite(device.linear.peak) / choice.weight;
+  choice.scale = scale > 0 ? scale : std::max(kLeastScale, std::min({1.0, by_inertia, by_weight}));
+  const double needed = unscaled * std::sqrt(choice.scale);
+  const double stiffest = std::sqrt(kStiffest * choice.scale / device.linear.mass);
+  const double quiet = std::min({unscaled, QuietRate(device, smoothing), stiffest});
+  choice.coupling = CouplingAt(std::min(std::max(needed, quiet), fastest), D, device);
   choice.coupling.max_force = OrInfinite(device.linear.peak);
   choice.coupling.max_moment = OrInfinite(device.angular.peak);
-  WithoutMoments(device, &choice.coupling);
-  choice.scale = std::min(1.0, std::pow(rate / wanted, 2));
-  HandCoupling unlimited = choice.coupling;
-  unlimited.max_force = unlimited.max_moment = OrInfinite(0);
-  choice.weight = WeightAtHand(tree, grasp, q, unlimited);
-  choice.unseen_work = UnseenWork(device);
-  const double bearable = 0.5 * choice.coupling.max_force;
-  if (choice.scale * choice.weight > bearable) choice.scale = bearable / choice.weight;
   return choice;
 }
 

@@ -139,8 +139,9 @@ void MechanismTick::Show(TickPicture* picture) const noexcept {
   picture->joints = dynamics_.joints();
   picture->X_WH = X_WH_;
   picture->X_WG = X_WG_;
-  picture->dynamic = dynamics_.w_d();
-  picture->constraint = w_c_;
+  // As the hand feels them, at the mechanism's scale.
+  picture->dynamic = w_d_ / options_.scale;
+  picture->constraint = -(F_Ho_ + w_d_) / options_.scale;
 }
 
 void MechanismTick::Reset() noexcept {

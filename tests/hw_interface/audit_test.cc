@@ -107,7 +107,7 @@ class Session {
     safety_ = choice.safety;
     observer_ = choice.observer;
     promise = {true, true, options.scale, options.inertia, {}};
-    promise.coupling.stiffness = options.law.stiffness;
+    promise.coupling.stiffness = options.law.stiffness / options.scale;
     tick_ = [this, options]() -> std::unique_ptr<Tick> {
       return std::make_unique<MechanismTick>(tree_, grasp_, q_, master_.info(), options);
     };
@@ -171,11 +171,19 @@ TEST_P(EverySession, IsSound) {
   EXPECT_TRUE(report.sound()) << report.Text();
   EXPECT_EQ(report.ticks, 1500u);
   EXPECT_GT(report.energy.throughput, 0.01);
+  if (!options.paper) return;
+  // What the hand felt of the constraints is what was promised, however light the mechanism.
+  const Felt stiffness = FeltIn(session.recording).stiffness;
+  EXPECT_NEAR(stiffness.promised, session.promise.scale * session.promise.coupling.stiffness[0],
+              1e-9);
+  if (stiffness.known) EXPECT_NEAR(stiffness.value / stiffness.promised, 1, 0.05);
 }
 
 INSTANTIATE_TEST_SUITE_P(Examples, EverySession,
                          testing::Values(std::pair{"crank", false}, std::pair{"slider-crank", true},
-                                         std::pair{"four-bar", false}, std::pair{"rssr", false},
+                                         std::pair{"two-link-arm", true},
+                                         std::pair{"four-bar", true}, std::pair{"four-bar", false},
+                                         std::pair{"rssr", false},
                                          std::pair{"stewart-gough", false}));
 
 /// One number in the middle of a session, a little off: the audit finds it, whichever it is.

@@ -245,18 +245,16 @@ INSTANTIATE_TEST_SUITE_P(Examples, EveryCoupledSession,
                          [](const auto& info) { return TestName(info.param); });
 
 TEST(ChooseCoupling, ScalesDownWhatIsTooHeavyForTheDevice) {
-  const Mechanism platform = Example("stewart-gough");
-  const KinematicTree tree = BuildKinematicTree(platform);
-  const GraspFrame grasp = GraspFrameOf(tree, FindGrasp(platform, "handle"));
+  const Mechanism crank = Example("crank");
+  const KinematicTree tree = BuildKinematicTree(crank);
+  const GraspFrame grasp = GraspFrameOf(tree, FindGrasp(crank, "tip"));
   DeviceInfo device;
   device.takes_wrench = true;
-  device.linear = {10, 1, 0, 0, 100, 2};
-  device.angular = {1, 1, 0, 0, 10, 15};
+  device.linear = {0.5, 1, 0, 0, 4, 2};
   const VectorXd q = ClosedStart(tree);
   const CouplingChoice choice = ChooseCoupling(tree, grasp, q, device, kSmoothing);
-  // The platform's 10 kg and its legs' share.
-  EXPECT_GT(choice.weight, 10 * 9.81);
-  EXPECT_NEAR(choice.scale * choice.weight, 50, 1e-9);
+  EXPECT_GT(choice.weight, 2);
+  EXPECT_NEAR(choice.scale * choice.weight, 2, 1e-9);
   device.linear.peak = 0;
   EXPECT_EQ(ChooseCoupling(tree, grasp, q, device, kSmoothing).scale, 1);
 }
@@ -265,6 +263,46 @@ TEST(ChooseCoupling, RefusesAStructure) {
   const KinematicTree tree = BuildKinematicTree(Example("beam-on-three-supports"));
   EXPECT_THROW(ChooseCoupling(tree, GraspFrameOf(tree, 0), ClosedStart(tree), {}, kSmoothing),
                std::invalid_argument);
+}
+
+/// The spring is to the scaled inertia what it is to the whole one, but not softer than one behind
+/// which a step of the encoders pulls with 2 % of the peak.
+TEST(ChooseCoupling, ALighterMechanismGetsASofterSpringDownToWhatIsQuiet) {
+  const KinematicTree tree = BuildKinematicTree(Example("four-bar"));
+  const GraspFrame grasp = GraspFrameOf(tree, 0);
+  const VectorXd q = ClosedStart(tree);
+  DeviceInfo device;
+  device.takes_wrench = true;
+  device.linear = {0.5, 1, 0, 0, 20, 2};
+  device.angular = {0.004, 0.01, 0, 0, 1, 15};
+  const auto stiffness = [&](double scale) {
+    const CouplingChoice choice = ChooseCoupling(tree, grasp, q, device, kSmoothing, scale);
+    EXPECT_EQ(choice.scale, scale);
+    return choice.coupling.stiffness[0];
+  };
+  // With coarse encoders nothing is quiet: the spring goes with the scale.
+  device.linear.resolution = 1e-2;
+  EXPECT_NEAR(stiffness(1e-3) / stiffness(2e-3), 0.5, 1e-6);
+  device.linear.resolution = 5e-5;
+  const CouplingChoice light = ChooseCoupling(tree, grasp, q, device, kSmoothing, 1e-4);
+  // A step in one sample: the spring, and the share of the speed that the filter of 2 ms takes.
+  const double share = 1 - std::exp(-device.period / kSmoothing);
+  const double pull =
+      5e-5 * (light.coupling.stiffness[0] + share / device.period * light.coupling.damping[0]);
+  EXPECT_NEAR(pull, 0.02 * 20, 1e-9);
+}
+
+/// A tenth of the peak in a tick at 0.15 m/s.
+TEST(ChooseCoupling, AWeakDeviceGetsASofterSpring) {
+  const KinematicTree tree = BuildKinematicTree(Example("stewart-gough"));
+  const GraspFrame grasp = GraspFrameOf(tree, 0);
+  DeviceInfo device;
+  device.takes_wrench = true;
+  device.linear = {0.3, 1, 0, 1e-5, 8, 2};
+  const CouplingChoice choice =
+      ChooseCoupling(tree, grasp, ClosedStart(tree), device, kSmoothing, 1);
+  EXPECT_NEAR(choice.coupling.stiffness[0] * 0.15 * device.period, 0.1 * 8, 1e-9);
+  EXPECT_EQ(choice.coupling.stiffness[3], 0);
 }
 
 TEST(ChooseCoupling, SlowerDevicesGetASofterSpring) {

@@ -22,8 +22,10 @@ struct PointOptions {
   double reach = 0, hertz = 1;  // of the hand's target, about each axis
   double peak = 20;
   bool senses_wrench = false;
-  double coulomb = 0;       // dry friction along x, y and z [N]
-  double saturates_at = 0;  // what the motors give at most, whatever the device states; 0: all
+  double coulomb = 0;         // dry friction along x, y and z [N]
+  double saturates_at = 0;    // what the motors give at most, whatever the device states; 0: all
+  double resolution = 0;      // steps of the measured position [m]; 0: a perfect sensor
+  bool forces_alone = false;  // no moments, and no turning: three freedoms
 };
 
 class PointMaster : public Master {
@@ -44,7 +46,8 @@ class PointMaster : public Master {
     info.delay = options_.delay_periods * options_.period;
     info.senses = kSensesPose | (options_.senses_wrench ? kSensesAppliedWrench : kSensesEcho);
     info.takes_wrench = true;
-    info.linear = {options_.mass, options_.damping, 0, 0, options_.peak, 5};
+    info.linear = {options_.mass, options_.damping, 0, options_.resolution, options_.peak, 5};
+    if (options_.forces_alone) return info;
     info.angular = {options_.inertia, options_.angular_damping, 0, 0, 0.05 * options_.peak, 50};
     return info;
   }
@@ -63,10 +66,15 @@ class PointMaster : public Master {
     state->valid = info().senses;
     state->dead_man = true;
     state->command_echo = echo_;
-    state->X_DH.p = Vector3d(x[0], x[1], x[2]);
+    for (int axis = 0; axis < 3; ++axis) state->X_DH.p[axis] = Measured(x[axis]);
     state->X_DH.R = Eigen::AngleAxisd(x[3], Vector3d::UnitZ()).toRotationMatrix();
     state->applied_F_Ho_D << force[0], force[1], force[2], 0, 0, force[3];
     return IoStatus::kOk;
+  }
+
+  double Measured(double value) const noexcept {
+    const double step = options_.resolution;
+    return step > 0 ? step * std::round(value / step) : value;
   }
 
   void Advance(std::int64_t now_ns) noexcept {
@@ -77,7 +85,7 @@ class PointMaster : public Master {
     const double most = options_.saturates_at, wanted = command.F_Ho_D.head<3>().norm();
     if (most > 0 && wanted > most) command.F_Ho_D *= most / wanted;
     force = {command.F_Ho_D[0], command.F_Ho_D[1], command.F_Ho_D[2], command.F_Ho_D[5]};
-    for (int axis = 0; axis < 4; ++axis) {
+    for (int axis = 0; axis < (options_.forces_alone ? 3 : 4); ++axis) {
       const double before = x[axis];
       const double damping = axis < 3 ? options_.damping : options_.angular_damping;
       for (int i = 0; i < kSubsteps; ++i) {

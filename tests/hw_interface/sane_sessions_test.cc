@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "hw_interface/point_master.h"
 #include "hw_interface/tick_input.h"
 #include "support/examples.h"
 #include "vmech/hw_interface/loop/runner.h"
@@ -113,6 +114,82 @@ TEST_P(SaneSessions, HardlyEverTrip) {
   }
   EXPECT_LE(trips, sessions / 100) << told;
 }
+
+/// Three freedoms of 8 N, with steps of a hundredth of a millimetre, and a hand that swings by 2 cm
+/// whatever the mechanism allows.
+PointOptions SmallDevice() {
+  PointOptions device;
+  device.mass = 0.3;
+  device.damping = 1;
+  device.resolution = 1e-5;
+  device.peak = 8;
+  device.forces_alone = true;
+  device.hand_stiffness = 200;
+  device.hand_damping = 6;
+  device.reach = 0.02;
+  device.hertz = 0.6;
+  return device;
+}
+
+/// The largest change of the force from one tick to the next [N]. No moment is ever wanted or sent.
+double LargestStep(const Recording& recording) {
+  double largest = 0;
+  Vector3d before = Vector3d::Zero();
+  for (const TickRecord& tick : recording.ticks) {
+    EXPECT_EQ(tick.wanted_F_Ho_D.tail<3>().norm(), 0);
+    EXPECT_EQ(tick.sent_F_Ho_D.tail<3>().norm(), 0);
+    const Vector3d force = tick.sent_F_Ho_D.head<3>();
+    largest = std::max(largest, (force - before).norm());
+    before = force;
+  }
+  return largest;
+}
+
+std::vector<std::string> HeldBySmallDevices() {
+  std::vector<std::string> names = Playable();
+  for (const char* name : {"puma-560", "redundant-arm", "stewart-gough-sps"}) {
+    names.emplace_back(name);
+  }
+  return names;
+}
+
+class SmallDevices : public testing::TestWithParam<std::string> {};
+
+/// Forces at 2 % and, for comparison, those that the device bears.
+TEST_P(SmallDevices, HoldEveryExampleAtAPointWithoutAJump) {
+  Mechanism mechanism = Example(GetParam());
+  mechanism.grasps[0].kind = GraspKind::kPoint;
+  const KinematicTree tree = BuildKinematicTree(mechanism);
+  const VectorXd q = ClosedStart(tree);
+  for (const double scale : {0.02, 0.0}) {
+    PointMaster master(SmallDevice());
+    master.Configure();
+    CoupledTickOptions options;
+    const CouplingChoice choice =
+        ChooseCoupling(tree, GraspFrameOf(tree, 0), q, master.info(), options.smoothing, scale);
+    options.coupling = choice.coupling;
+    options.scale = choice.scale;
+    CoupledTick tick(tree, 0, q, master.info().period, options);
+    RunnerOptions run;
+    run.seconds = 3;
+    run.realtime.reset();
+    run.record = true;
+    run.safety = choice.Safety();
+    FreeRunningClock clock;
+    Runner runner(run, &master, &tick, &clock);
+    const RunSummary summary = runner.Run();
+    EXPECT_EQ(summary.status, RunStatus::kFinished) << summary.FullReport();
+    EXPECT_LE(summary.peak_force, 8 * (1 + 1e-9));
+    EXPECT_GT(summary.peak_force, 0.1);
+    EXPECT_LT(LargestStep(runner.Kept()), 1) << "at " << choice.scale;
+    std::printf("%s %g K %g step %g peak %g E %g\n", GetParam().c_str(), choice.scale,
+                choice.coupling.stiffness[0], LargestStep(runner.Kept()), summary.peak_force,
+                summary.least_energy);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Examples, SmallDevices, testing::ValuesIn(HeldBySmallDevices()),
+                         [](const auto& info) { return TestName(info.param); });
 
 INSTANTIATE_TEST_SUITE_P(Shards, SaneSessions, testing::Range(0, kShards));
 

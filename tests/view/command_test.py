@@ -367,6 +367,90 @@ class Doors(CommandTest):
         self.view = None
 
 
+class Recordings(CommandTest):
+    """A recording's page against `vmech replay --audit` of the same file."""
+
+    ENERGIES = {"the hand did (\\S+) J": "work of the hand", "(\\S+) J went into motion": "motion",
+                "(\\S+) J into height": "height", "(\\S+) J into springs": "joints",
+                "(\\S+) J were lost": "lost in steps"}
+
+    def record(self):
+        path = FOLDER / "held.csv"
+        subprocess.run([VMECH, "haptic", EXAMPLES / "slider-crank.yaml", "--free", "--seconds", "2",
+                        "--record", path, "--force", "--quiet"], check=True, cwd=FOLDER)
+        return path
+
+    def show(self, path):
+        """The page's audit, and what the command says."""
+        said = subprocess.run([VMECH, "replay", path, "--audit"], capture_output=True, text=True)
+        self.view = View(path)
+        BROWSER.get(self.view.url)
+        self.wait("return Boolean(window.vmechView)")
+        self.assertEqual(errors_of(BROWSER), [])
+        audit = self.do("""const {words, findings, charts} = vmechView.scene.motion.audit;
+            const ends = charts.flatMap(({series}) => series.map(
+                ({name, values}) => [name, values[values.length - 1]]));
+            return {words, findings, ends: Object.fromEntries(ends)};""")
+        return audit, said
+
+    def test_shows_what_its_audit_computes(self):
+        audit, said = self.show(self.record())
+        self.assertEqual(said.returncode, 0)
+        for finding in audit["findings"]:
+            line = next(line for line in said.stdout.splitlines() if finding["what"] in line)
+            self.assertIn(f" {finding['worst']:.2g} ", line)
+        for words, name in self.ENERGIES.items():
+            told = float(re.search(words, said.stdout)[1])
+            self.assertAlmostEqual(audit["ends"][name], told, delta=1e-3 * abs(told), msg=name)
+        told = float(re.search(r"constraints did (\S+) J", said.stdout)[1])
+        self.assertAlmostEqual(audit["ends"]["work"], told, delta=0.06 * told)
+        closure = next(f for f in audit["findings"] if "closed to" in f["what"])
+        largest = self.do("""return Math.max(...vmechView.scene.motion.audit.charts[1]
+            .series[0].values)""")
+        self.assertLessEqual(largest, closure["worst"] * (1 + 1e-6))
+        self.assertGreater(largest, 0)
+        self.assertIn(audit["words"][0].split(": ")[1].rstrip("."), said.stdout)
+        self.assertTrue(BROWSER.find_element(By.CSS_SELECTOR, ".vv-verdict").is_displayed())
+
+    def test_its_plots_and_the_mechanism_share_a_cursor(self):
+        self.show(self.record())
+        for place in (0, 700.25, 1999):
+            self.do("vmechView.goTo(arguments[0])", place)
+            values, wanted = self.do("""
+                const {charts} = vmechView.scene.motion.audit, i = Math.floor(arguments[0]);
+                const part = arguments[0] - i;
+                const keys = document.querySelectorAll(".vv-figure .vv-key b");
+                return [Array.from(keys, (key) => Number(key.textContent)),
+                  charts.flatMap(({series}) => series.map(({values}) => values[i] + part *
+                      (values[Math.min(i + 1, values.length - 1)] - values[i])))]""", place)
+            self.assertEqual(len(values), 7)
+            for value, exact in zip(values, wanted):
+                self.assertAlmostEqual(value, exact, delta=6e-3 * abs(exact) + 1e-12)
+        chart = BROWSER.find_elements(By.CSS_SELECTOR, ".vv-figure canvas")[-1]
+        left, top, width = self.do("""arguments[0].scrollIntoView({block: "center"});
+            const {left, top, width} = arguments[0].getBoundingClientRect();
+            return [left, top, width]""", chart)
+        # Half way between the edges of the plot, which lie 50 and 8 pixels within.
+        Mouse(BROWSER).steps((left + 50 + (width - 58) / 2, top + 40), "down", "up")
+        self.assertAlmostEqual(self.do("return vmechView.time()"), 1, delta=0.02)
+
+    def test_a_number_that_does_not_belong_there_is_told(self):
+        path = self.record()
+        lines = path.read_text().splitlines(keepends=True)
+        names = next(line for line in lines if line.startswith("sequence")).split(",")
+        column = next(i for i, name in enumerate(names) if name.startswith("coordinate"))
+        row = lines[-500].split(",")
+        row[column] = str(float(row[column]) + 1e-3)
+        lines[-500] = ",".join(row)
+        path.write_text("".join(lines))
+        audit, said = self.show(path)
+        self.assertEqual(said.returncode, 3)
+        self.assertIn("not sound", audit["words"][0])
+        self.assertTrue(self.do("return Boolean(document.querySelector('.vv-verdict.vv-stopped'))"))
+        self.assertEqual(self.do("return document.querySelectorAll('.vv-unsound').length"),
+                         sum(not finding["sound"] for finding in audit["findings"]))
+
+
 class Documents(CommandTest):
     def test_the_report_plays_its_motion_from_the_disk(self):
         out = FOLDER / "slider-crank"

@@ -48,7 +48,14 @@ function decodeMotion(motion) {
         {grasp: motion.hand.grasp, wrenches: singlesOf(motion.hand.wrenches)},
     loads: (motion.loads || []).map(
         (load) => Object.assign({}, load, {wrenches: singlesOf(load.wrenches)})),
-    deadCentres: motion.dead_centres || []};
+    deadCentres: motion.dead_centres || [], audit: decodeAudit(motion.audit)};
+}
+
+function decodeAudit(audit) {
+  if (!audit) return null;
+  const decoded = (series) => series.map(({name, values}) => ({name, values: singlesOf(values)}));
+  return Object.assign({}, audit, {charts: audit.charts.map(
+      (chart) => Object.assign({}, chart, {series: decoded(chart.series)}))});
 }
 
 // Throws an Error that says in words what is wrong.

@@ -18,6 +18,10 @@ function buildLayout(view) {
     side.append(section("Design", boxes.design));
   }
   if (scene.session) side.append(section("Session", boxes.live));
+  if (scene.motion && scene.motion.audit) {
+    boxes.audit = make("div", {});
+    side.append(section("Audit", boxes.audit));
+  }
   side.append(section("Numbers", boxes.values, boxes.plots), section("Show", boxes.show),
       section("Parts", boxes.tree));
   view.root.replaceChildren(main, side);

@@ -55,7 +55,12 @@ class View {
     this.plots = new Plots(this, boxes.plots);
     this.on("picked", () => this.plots.rebuild());
     this.plots.rebuild();
-    this.theme.change = () => { this.stage.tint(); this.plots.rebuild(); };
+    if (boxes.audit) this.audit = new Audit(this, boxes.audit);
+    this.theme.change = () => {
+      this.stage.tint();
+      this.plots.rebuild();
+      if (this.audit) this.audit.rebuild();
+    };
     for (const [name, on] of Object.entries(this.shown)) this.show(name, on);
     scene.grasps.forEach((grasp, index) => {
       this.paths.add(grasp.link, grasp.pose.slice(0, 3), grasp.name, index);
@@ -152,6 +157,7 @@ class View {
     }
     this.values.refresh();
     this.plots.draw();
+    if (this.audit) this.audit.draw();
     this.stage.invalidate();
   }
 
