@@ -6,8 +6,8 @@ import pathlib
 import re
 import sys
 
-# Members without a comment of their own: those of a declaration that Doxygen does not take apart, as
-# that of the three columns of an inertia. What is new is documented.
+# Members without a comment of their own: those of a declaration that Doxygen does not take apart,
+# as that of the three columns of an inertia. What is new is documented.
 MOST_MEMBERS = 10
 UNDOCUMENTED = re.compile(
     r"^(\S+:\d+): warning: (?:Member .* \(([a-z ]+)\) of (\w+) .*|(Compound) .*) is not documented",
