@@ -28,12 +28,12 @@ enum class Reduction {
 
 /// A number that a study comes to, by which designs are judged.
 struct Figure {
-  FigureKind kind = FigureKind::kForce;
+  FigureKind kind = FigureKind::kForce;  ///< what is measured
   int index = -1;  ///< of the joint, the drive, the entry of StudyOutcome::bearings, or the grasp
-  Reduction reduction = Reduction::kPeak;
-  std::string name;                 ///< "pin.force", "main.drive.rms", "wrist.life", "mass"
-  std::string unit;                 ///< "N"
-  std::vector<Vector3d> path = {};  ///< [poses] of kPathError: where the grasp should be [m]
+  Reduction reduction = Reduction::kPeak;  ///< of its history to one number
+  std::string name;                        ///< "pin.force", "main.drive.rms", "wrist.life", "mass"
+  std::string unit;                        ///< "N"
+  std::vector<Vector3d> path = {};         ///< [poses] of kPathError: where the grasp should be [m]
 };
 
 /// Peaks of the force and moment of every joint that is loaded, of every drive and of the force on

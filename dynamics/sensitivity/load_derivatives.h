@@ -18,8 +18,8 @@ struct LoadDerivatives {
   std::vector<Dual> grasps;         ///< [poses, grasps, 3] their origins in the world [m]
   std::vector<int> first_freedom;   ///< [joints + 1]
 
-  size_t poses() const { return times.size(); }
-  size_t joints() const { return first_freedom.size() - 1; }
+  size_t poses() const { return times.size(); }               ///< of the study
+  size_t joints() const { return first_freedom.size() - 1; }  ///< of the mechanism
 };
 
 /// Why the loads of a study cannot be differentiated; empty where they can.
