@@ -19,7 +19,10 @@ using StudyAt = std::function<LoadStudy(double value)>;
 struct StudyChange {
   Design<Dual> design;
   PrescribedSlopes prescribed;
-  double cycle = 0;     ///< slope of LoadStudy::cycle
+  std::vector<Vector3<Dual>> grasps;  ///< their origins, in their links
+  double cycle = 0;                   ///< slope of LoadStudy::cycle
+  /// Of a part of a motion the numbers of its poses in the whole, for messages; else empty.
+  std::vector<size_t> pose_numbers;
   double rounding = 0;  ///< of the slope of a number of order 1, such as an angle
   /// Stiffnesses of joints change, by which the rule `stiffness` shares what statics leaves open.
   bool shares = false;
