@@ -30,13 +30,24 @@ struct DesignTask {
   std::vector<DesignConstraint> constraints;  ///< may be empty
 };
 
+/// A design that the search has looked at.
+struct EvaluatedDesign {
+  std::vector<double> values;   ///< [variables] in their units
+  bool defined = false;         ///< it can be assembled and moved; else there are no figures
+  std::vector<double> figures;  ///< the objective, smooth, then the constraints'
+  std::vector<std::vector<double>> slopes;  ///< [figures, variables]
+};
+
 /// How a design is searched.
 struct DesignOptions {
   int threads = 1;         ///< >= 1, a start each
   int starts = 1;          ///< the design as it is, and others that are spread over the bounds
   ProgramOptions program;  ///< of each start
-  /// Called after every design that was evaluated; false stops the search with the best so far.
-  std::function<bool(int evaluations)> progress;  ///< false stops
+  /// What an interrupted search for the same had looked at, in its order: the search goes the same
+  /// way without computing it again, and on from there.
+  std::vector<EvaluatedDesign> known;
+  /// Called with every design that was computed; false stops the search with the best so far.
+  std::function<bool(const EvaluatedDesign& design)> progress;
 };
 
 /// What came of one start.
@@ -67,8 +78,9 @@ struct DesignResult {
 /// Searches the design of a study within bounds by exact derivatives, on the assembly branch of the
 /// study as it is; bearings are those of `outcome`. A design that cannot be assembled or moved
 /// draws the search back.
+/// An objective that is a root mean square is searched by its square, which is smooth at zero.
 /// @throws std::invalid_argument for a variable or figure that has no derivatives, or whose bounds
-/// do not hold its value; std::runtime_error if NLopt is not there.
+/// do not hold its value; std::runtime_error if the package of the method is not there.
 DesignResult OptimiseDesign(const StudyFile& file, const StudyOutcome& outcome,
                             const DesignTask& task, const DesignOptions& options);
 

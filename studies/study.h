@@ -23,6 +23,12 @@ struct BearingRequest {
   BearingRequirements requirements;  ///< life, reliability, lubrication
 };
 
+/// Where the origin of a grasp is wanted as the mechanism moves.
+struct WantedPath {
+  int grasp = -1;                     ///< index in Mechanism::grasps
+  std::vector<Vector3d> points = {};  ///< [poses] in the world [m]
+};
+
 /// What a study simulates instead of following a motion. The mechanism, drives, external loads,
 /// times and the rule are those of StudyFile::study.
 struct SimulationRequest {
@@ -48,6 +54,7 @@ struct StudyFile {
   /// A motion that was computed before, instead of its own. What acts is what the study says.
   std::optional<JointHistory> history;
   std::vector<BearingRequest> bearings;          ///< as in the file
+  std::vector<WantedPath> paths = {};            ///< as in the file
   std::vector<Bearing> catalogue;                ///< the built-in one unless the file names another
   std::vector<StatedParameter> parameters = {};  ///< of the mechanism and the study
   std::vector<ParameterSetting> settings = {};   ///< that it was read with

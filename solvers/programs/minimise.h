@@ -23,7 +23,7 @@ struct ProgramResult {
 };
 
 /// @throws std::invalid_argument if x0 does not fit or is not within the bounds;
-/// std::runtime_error if NLopt is not there.
+/// std::runtime_error if the package of the method is not there.
 ProgramResult Minimise(NonlinearProgram& program, const ProgramOptions& options,
                        const VectorXd& x0);
 

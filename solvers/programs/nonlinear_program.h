@@ -26,10 +26,11 @@ class NonlinearProgram {
   int constraints_;
 };
 
-/// The algorithms of NLopt that keep inequality constraints by their slopes.
+/// The algorithms that keep inequality constraints by their slopes: of NLopt, and Ipopt.
 enum class ProgramMethod {
   kSlsqp,  ///< sequential quadratic programming [Kraft 1994]
   kMma,    ///< the method of moving asymptotes [Svanberg 2002]
+  kIpopt,  ///< an interior-point method [Waechter & Biegler 2006], curvature by L-BFGS
 };
 
 /// How a nonlinear program is solved, and when it counts as solved.
