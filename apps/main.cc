@@ -19,6 +19,7 @@
 #include "vmech/apps/design/design_options.h"
 #include "vmech/apps/haptic/device_options.h"
 #include "vmech/apps/import_launcher.h"
+#include "vmech/apps/version.h"
 #include "vmech/mechanisms/files/document.h"
 #include "vmech/mechanisms/mechanism.h"
 
@@ -454,7 +455,7 @@ int Refuse(const CLI::App& app, const CLI::ParseError& error,
 int Run(const std::vector<std::string>& words) {
   CLI::App app{"vmech: mechanisms, their motion, the loads on their joints, and bearings for them",
                "vmech"};
-  app.set_version_flag("-V,--version", std::string("vmech ") + VMECH_VERSION);
+  app.set_version_flag("-V,--version", std::string(vmech::VersionText()));
   app.require_subcommand(1);
   app.footer(kExitCodes);
   Arguments arguments;
