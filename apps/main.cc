@@ -16,6 +16,7 @@
 #include "vmech/apps/console/printable_streams.h"
 #include "vmech/apps/console/suggestion.h"
 #include "vmech/apps/import_launcher.h"
+#include "vmech/apps/version.h"
 #include "vmech/mechanisms/files/document.h"
 
 namespace {
@@ -107,7 +108,7 @@ int Refuse(const CLI::App& app, const CLI::ParseError& error,
 int Run(const std::vector<std::string>& words) {
   CLI::App app{"vmech: mechanisms, their motion, the loads on their joints, and bearings for them",
                "vmech"};
-  app.set_version_flag("-V,--version", std::string("vmech ") + VMECH_VERSION);
+  app.set_version_flag("-V,--version", std::string(vmech::VersionText()));
   app.require_subcommand(1);
   app.footer(kExitCodes);
   Arguments arguments;

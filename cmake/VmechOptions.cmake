@@ -16,14 +16,23 @@ set(VMECH_SANITIZE "" CACHE STRING "sanitizers, for example address,undefined")
 set(VMECH_ARCH "x86-64-v3" CACHE STRING
     "-march of the library; empty for the compiler's own choice")
 
-# vmech_leave_out(<part> <Debian package>): says that a part is not built, nor tested, for want of a
-# package; an error where all are required.
+# vmech_built_with(<name> <version>): a package that the program may do without is built in; for
+# `vmech --version`.
+function(vmech_built_with name version)
+  set_property(GLOBAL APPEND PROPERTY VMECH_BUILT_WITH "${name} ${version}")
+endfunction()
+
+# vmech_leave_out(<part> <Debian package> [<name>]): says that a part is not built, nor tested, for
+# want of a package; an error where all are required. One that `vmech --version` speaks of is named.
 function(vmech_leave_out part package)
   if(VMECH_REQUIRE_PACKAGES)
     message(FATAL_ERROR "${part} needs ${package}, which was not found: install it, or set "
                         "VMECH_REQUIRE_PACKAGES=OFF to do without")
   endif()
   message(STATUS "${part} is off, ${package} was not found")
+  foreach(name ${ARGN})
+    set_property(GLOBAL APPEND PROPERTY VMECH_BUILT_WITHOUT "${name} (${package})")
+  endforeach()
 endfunction()
 
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)

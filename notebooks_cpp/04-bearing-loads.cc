@@ -246,9 +246,8 @@ int main(int argc, char** argv) {
   // The remedy is not a better computation but a better joint. Give the loop exactly the freedoms
   // that make $n - \operatorname{rank} C$ come out right without redundancy: let the crank pin
   // slide along its axis (a cylindrical joint), and make the rocker pin a ball joint. The loop then
-  // has $1 + 2 + 3
-  // + 1 = 7$ freedoms, one more than the six equations that close a loop in space. It moves exactly
-  // as before.
+  // has $1 + 2 + 3 + 1 = 7$ freedoms, one more than the six equations that close a loop in space.
+  // It moves exactly as before.
 
   //%%
   LoadStudy better = study;

@@ -111,8 +111,12 @@ class Help(unittest.TestCase):
             for word in ("Usage: vmech " + name, "YAML or JSON", "Exit codes", *words):
                 self.assertIn(word, result.stdout)
 
-    def test_version_is_name_and_number(self):
-        self.assertRegex(vmech("--version").stdout, r"^vmech \d+\.\d+\.\d+\n$")
+    def test_version_is_name_and_number_then_commit_compiler_and_packages(self):
+        first, *lines = vmech("--version").stdout.splitlines()
+        self.assertRegex(first, r"^vmech \d+\.\d+\.\d+$")
+        self.assertEqual([line.split()[0] for line in lines],
+                         ["commit", "compiler", "with", "without"])
+        self.assertRegex(lines[0], r" [0-9a-f]{12}( and changes to it)?$| unknown: ")
 
     def test_wrong_command_lines_are_code_1_on_standard_error(self):
         for arguments in ((), ("chekc",), ("check",), ("loads",), ("loads", "a", "b"),

@@ -21,6 +21,8 @@ INSTALLED = False
 # A library by which each package is known.
 PACKAGES = {"ceres": "libglog", "ipopt": "libipopt", "kinsol": "libsundials", "nlopt": "libnlopt",
             "mpi": "libmpi", "cad": "libTKernel", "sdformat": "libsdformat"}
+# What `vmech --version` calls them, of those that are in a library of their own.
+NAMES = {"ceres": "Ceres", "ipopt": "Ipopt", "kinsol": "SUNDIALS", "nlopt": "NLopt", "mpi": "MPI"}
 SOLVERS = ["penalty", "augmented_lagrangian", "nullspace", "ceres_weighted", "ceres_exact", "ipopt",
            "nlopt_slsqp", "nlopt_auglag_lbfgs", "kinsol"]
 
@@ -76,6 +78,15 @@ class LateLibraries(unittest.TestCase):
                 loaded, output = self.loaded(*self.ik(solver))
                 self.assertEqual(loaded, {package})
                 self.assertNotIn("unavailable", output)
+
+    def test_version_names_the_packages_that_are_built_in_and_those_that_are_not(self):
+        lines = dict(line.split(maxsplit=1)
+                     for line in self.run_vmech("--version").stdout.splitlines())
+        for package, name in NAMES.items():
+            with self.subTest(package=package):
+                pattern = rf"\b{name} (?:\d+\.\d+|\(lib)"
+                self.assertEqual(bool(re.search(pattern, lines["with"])), built(package))
+                self.assertEqual(bool(re.search(pattern, lines["without"])), not built(package))
 
     def test_a_missing_library_is_named(self):
         if not INSTALLED:

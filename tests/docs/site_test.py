@@ -1,5 +1,6 @@
 """The documentation site is whole: every link and anchor of its pages leads somewhere in it, every
-chapter is there with its results, and the browser draws every formula of it:
+chapter is there with its results, nothing of its Markdown is left as it is written, and the browser
+draws every formula of it:
 site_test.py SITE SOURCE CHROMIUM"""
 
 import html
@@ -21,12 +22,14 @@ for (const element of left) document.body.append(element);
 
 
 class Page(html.parser.HTMLParser):
-    """The links, the anchors and the formulas of a page."""
+    """The links, the anchors and the formulas of a page, and its words beside code."""
+
+    CODE = ("pre", "code", "script", "style", "svg")
 
     def __init__(self, path):
         super().__init__()
         self.links, self.from_network, self.anchors, self.formulas = [], [], set(), []
-        self.in_formula = None
+        self.in_formula, self.in_code, self.words = None, 0, ""
         self.feed(path.read_text(encoding="utf-8"))
 
     def handle_starttag(self, tag, attributes):
@@ -37,6 +40,7 @@ class Page(html.parser.HTMLParser):
             self.links.append(target)
             if tag in ("script", "img", "link") and urllib.parse.urlparse(target).netloc:
                 self.from_network.append(target)
+        self.in_code += tag in self.CODE
         if of.get("class") == "math":
             self.in_formula = tag
             self.formulas.append((tag, ""))
@@ -45,8 +49,11 @@ class Page(html.parser.HTMLParser):
         if self.in_formula:
             tag, text = self.formulas[-1]
             self.formulas[-1] = (tag, text + data)
+        elif not self.in_code:
+            self.words += data
 
     def handle_endtag(self, tag):
+        self.in_code -= tag in self.CODE
         if tag == self.in_formula:
             self.in_formula = None
 
@@ -65,6 +72,14 @@ def link_problems(path, page, pages, root):
             continue  # Doxygen names sections of a class that it then has no reason to write
         elif anchor and linked in pages and anchor not in pages[linked].anchors:
             yield f"{path.relative_to(root)}: '{target}' leads to no anchor"
+
+
+def markdown_problems(path, page, root):
+    """Marks of Markdown that are left as they are: a formula or bold words that it did not see."""
+    for mark in ("$", "**"):
+        at = page.words.find(mark)
+        if at >= 0 and path.parent.name != "api":
+            yield f"{path.relative_to(root)}: '{mark}' is left in '{page.words[at - 20:at + 30]}'"
 
 
 def formula_problems(pages, root, chromium):
@@ -93,6 +108,8 @@ def main():
     pages = {path: Page(path) for path in root.rglob("*.html")}
     problems = [problem for path, page in pages.items()
                 for problem in link_problems(path, page, pages, root)]
+    problems += [problem for path, page in pages.items()
+                 for problem in markdown_problems(path, page, root)]
     problems += formula_problems(pages, root, sys.argv[3])
     problems += chapter_problems(root, source)
     print("\n".join(problems) or

@@ -4,6 +4,7 @@ Usage: package_test.py CPACK BUILD_FOLDER EXAMPLES
 """
 
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -30,7 +31,9 @@ def main():
             assert name not in depends, f"Depends: {name} is not needed: {depends}"
         output_of("dpkg-deb", "--extract", package, root / "unpacked")
         vmech = root / "unpacked/usr/bin/vmech"
-        print(output_of(vmech, "--version"), end="")
+        version = output_of(vmech, "--version")
+        assert re.match(r"vmech \d+\.\d+\.\d+\ncommit ", version), version
+        print(version, end="")
         print(output_of(vmech, "loads", examples / "slider-crank-study.yaml", "--out",
                         root / "report"), end="")
         assert (root / "report/report.html").stat().st_size > 10_000
