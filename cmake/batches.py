@@ -28,7 +28,7 @@ ALIAS = re.compile(r"namespace|using (?!\w+ = )")  # of the same in every source
 SCOPE = re.compile(r"^namespace ([\w:]+) \{$", re.MULTILINE)
 SAID = re.compile(r"(?<![.:>])\b(?:[A-Z]|k[A-Z])\w*")  # not members, nor variables
 UNSAID = re.compile(r'//.*|"(?:\\.|[^"\\\n])*"')  # comments and strings
-MAIN = re.compile(r"^int (main)\(", re.MULTILINE)
+ENTRY = re.compile(r"^int (main)\(|^\S.* (vmech_\w+) = ", re.MULTILINE)  # of a program or library
 INCLUDED = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 
@@ -61,8 +61,14 @@ def defined_at_margin(text):
 
 
 def hidden_names(text):
-    """Names of what only this source sees, by which it may clash with others."""
-    return defined_at_margin("".join(HIDDEN.findall(text))) | set(MAIN.findall(text))
+    """Names of what only this source may define, by which it may clash with others."""
+    entries = {name for names in ENTRY.findall(text) for name in names if name}
+    return defined_at_margin("".join(HIDDEN.findall(text))) | entries
+
+
+def encloses(outer, inner):
+    """Whether a namespace is another or holds it; the one without a name holds all."""
+    return not outer or f"{inner}::".startswith(f"{outer}::")
 
 
 def scope_of(text):
@@ -90,8 +96,7 @@ class Source:
 
     def meets(self, other):
         """Whether the other says a name of this source's own, or has a header that gives it."""
-        visible = (f"{self.scope}::".startswith(f"{other.scope}::")
-                   or f"{other.scope}::".startswith(f"{self.scope}::"))
+        visible = encloses(self.scope, other.scope) or encloses(other.scope, self.scope)
         own = {(self.scope, name) for name in self.hidden}
         return visible and bool(self.hidden & other.said) or bool(own & (other.given - self.given))
 

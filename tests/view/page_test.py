@@ -123,7 +123,7 @@ class Picture(PageTest):
         self.assertEqual(self.do(theme), "light")
 
     def test_a_ground_drawn_by_a_mesh_is_glass_until_it_shall_not_be(self):
-        # A ring about the crank's joint at the origin, through which nothing could be seen from here.
+        # A ring about the crank's joint at the origin, through which nothing could be seen.
         self.open(scenes.with_mesh(800, link=0, large=0.03))
         button = self.find("//button[@aria-label='Glass: ground']")
         self.assertEqual(button.get_attribute("aria-pressed"), "true")
