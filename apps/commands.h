@@ -72,10 +72,11 @@ struct OptimiseArguments {
   std::string minimise, maximise;  ///< a figure by name; one of them is empty
   std::vector<std::string> vary;   ///< "crank/pin.x=40..60"
   std::vector<std::string> keep;   ///< "pin.life>=10000"
-  std::string method = "slsqp";    ///< or "mma"
+  std::string method = "slsqp";    ///< or "mma", "ipopt"
   int starts = 1;
   bool undetermined = false;
   std::filesystem::path out;  ///< empty: nothing is written
+  bool resume = false;        ///< goes on with the search in `out`
   int threads = 0;            ///< 0: all processors
   bool quiet = false;
   std::vector<std::string> set;  ///< parameters, "crank=60"

@@ -13,11 +13,13 @@ namespace vmech {
 /// lose half of the digits. Comparisons look at the values. N is double, or Lanes4 (lanes4.h).
 template <typename N>
 struct DualOf {
-  N value = 0;
+  N value = 0;  ///< of the function
   N slope = 0;  ///< d value / d parameter
 
   DualOf() = default;
+  /// A number that does not depend on the parameter.
   DualOf(double constant) : value(constant) {}  // NOLINT: numbers mix with duals
+  /// `slope` per unit of the parameter.
   DualOf(const N& value, const N& slope) : value(value), slope(slope) {}
   /// The same dual in every lane.
   template <typename M>
@@ -32,20 +34,24 @@ struct DualOf {
             N::Of([&](int lane) { return lanes[lane].slope; })};
   }
 
-  DualOf operator-() const { return {-value, -slope}; }
-  DualOf& operator+=(const DualOf& b) { return *this = *this + b; }
-  DualOf& operator-=(const DualOf& b) { return *this = *this - b; }
-  DualOf& operator*=(const DualOf& b) { return *this = *this * b; }
-  DualOf& operator/=(const DualOf& b) { return *this = *this / b; }
+  DualOf operator-() const { return {-value, -slope}; }              ///< of value and slope
+  DualOf& operator+=(const DualOf& b) { return *this = *this + b; }  ///< by the rule for +
+  DualOf& operator-=(const DualOf& b) { return *this = *this - b; }  ///< by the rule for -
+  DualOf& operator*=(const DualOf& b) { return *this = *this * b; }  ///< by the product rule
+  DualOf& operator/=(const DualOf& b) { return *this = *this / b; }  ///< by the quotient rule
+  /// Slopes add.
   friend DualOf operator+(const DualOf& a, const DualOf& b) {
     return {a.value + b.value, a.slope + b.slope};
   }
+  /// Slopes subtract.
   friend DualOf operator-(const DualOf& a, const DualOf& b) {
     return {a.value - b.value, a.slope - b.slope};
   }
+  /// The product rule.
   friend DualOf operator*(const DualOf& a, const DualOf& b) {
     return {a.value * b.value, a.slope * b.value + a.value * b.slope};
   }
+  /// The quotient rule; infinite or NaN where b's value is zero.
   friend DualOf operator/(const DualOf& a, const DualOf& b) {
     const N ratio = a.value / b.value;
     return {ratio, (a.slope - ratio * b.slope) / b.value};
@@ -54,36 +60,48 @@ struct DualOf {
   friend bool operator==(const DualOf& a, const DualOf& b) {
     return a.value == b.value && a.slope == b.slope;
   }
+  /// Of values alone.
   friend auto operator<(const DualOf& a, const DualOf& b) { return a.value < b.value; }
+  /// Of values alone.
   friend auto operator>(const DualOf& a, const DualOf& b) { return a.value > b.value; }
+  /// Of values alone.
   friend auto operator<=(const DualOf& a, const DualOf& b) { return a.value <= b.value; }
 
+  /// Of `a` where the condition holds, else of `b`: value and slope.
   template <typename Condition>
   friend DualOf Select(const Condition& condition, const DualOf& a, const DualOf& b) {
     return {Select(condition, a.value, b.value), Select(condition, a.slope, b.slope)};
   }
+  /// Slope as of a at zero.
   friend DualOf abs(const DualOf& a) { return Select(a.value < N(0), -a, a); }
+  /// With the slope of the lesser; a's if equal.
   friend DualOf min(const DualOf& a, const DualOf& b) { return Select(b < a, b, a); }
+  /// With the slope of the greater; a's if equal.
   friend DualOf max(const DualOf& a, const DualOf& b) { return Select(a < b, b, a); }
+  /// Slope 0 at zero, where there is none.
   friend DualOf sqrt(const DualOf& a) {
     using std::sqrt;
     const N root = sqrt(a.value), zero(0);
     return {root, Select(root > zero, N(N(0.5) * a.slope / root), zero)};
   }
+  /// The exponent is a constant.
   friend DualOf pow(const DualOf& a, double exponent) {
     using std::pow;
     return {pow(a.value, exponent), exponent * pow(a.value, exponent - 1) * a.slope};
   }
+  /// Slope 0: steps are not differentiated.
   friend DualOf round(const DualOf& a) {
     using std::round;
     return {round(a.value), N(0)};
   }
+  /// In (-pi, pi]. Slope 0 at the origin, where there is none.
   friend DualOf atan2(const DualOf& y, const DualOf& x) {
     using std::atan2;
     const N square = x.value * x.value + y.value * y.value, zero(0);
     const N slope = (x.value * y.slope - y.value * x.slope) / square;
     return {atan2(y.value, x.value), Select(square > zero, slope, zero)};
   }
+  /// Both at once; `angle` in radians.
   friend void SinCos(const DualOf& angle, DualOf* sine, DualOf* cosine) {
     N s, c;
     SinCos(angle.value, &s, &c);

@@ -14,7 +14,7 @@ class LateLibrary {
   /// linked with (RUNPATH), in LD_LIBRARY_PATH, and in those of the system.
   explicit LateLibrary(const std::string& name);
 
-  bool loaded() const { return handle_ != nullptr; }
+  bool loaded() const { return handle_ != nullptr; }  ///< else error() says why not
   /// What is missing, if it is not loaded: the file itself, or a library that it needs.
   const std::string& error() const { return error_; }
   /// Where it was found; empty if it is not loaded.

@@ -40,13 +40,15 @@ Vector6<T> Stacked(const Vector3<T>& a, const Vector3<T>& b) {
 /// Products chain, X_AC = X_AB * X_BC. T is the scalar.
 template <typename T>
 struct Pose {
-  Matrix3<T> R = Matrix3<T>::Identity();
-  Vector3<T> p = Vector3<T>::Zero();
+  Matrix3<T> R = Matrix3<T>::Identity();  ///< R_AB: its columns are B's axes in A
+  Vector3<T> p = Vector3<T>::Zero();      ///< p_AB: B's origin in A [m]
 
-  Pose operator*(const Pose& X) const { return {R * X.R, R * X.p + p}; }
+  Pose operator*(const Pose& X) const { return {R * X.R, R * X.p + p}; }  ///< X_AB X_BC = X_AC
+  /// The point p_B as p_A [m].
   Vector3<T> operator*(const Vector3<T>& point) const { return R * point + p; }
-  Pose inverse() const { return {R.transpose(), -(R.transpose() * p)}; }
+  Pose inverse() const { return {R.transpose(), -(R.transpose() * p)}; }  ///< X_BA
 
+  /// With numbers of another type.
   template <typename S>
   Pose<S> cast() const {
     return {R.template cast<S>(), p.template cast<S>()};
@@ -58,14 +60,16 @@ using Posed = Pose<double>;
 /// A force f [N] and a moment m [N m] about a point that the name of the variable states.
 template <typename T>
 struct Wrench {
-  Vector3<T> force = Vector3<T>::Zero();
-  Vector3<T> moment = Vector3<T>::Zero();
+  Vector3<T> force = Vector3<T>::Zero();   ///< [N]
+  Vector3<T> moment = Vector3<T>::Zero();  ///< [N m]
 
+  /// About the same point.
   Wrench operator+(const Wrench& w) const { return {force + w.force, moment + w.moment}; }
+  /// About the same point.
   Wrench operator-(const Wrench& w) const { return {force - w.force, moment - w.moment}; }
-  Wrench operator-() const { return {-force, -moment}; }
-  Wrench& operator+=(const Wrench& w) { return *this = *this + w; }
-  Wrench& operator-=(const Wrench& w) { return *this = *this - w; }
+  Wrench operator-() const { return {-force, -moment}; }             ///< that of the reaction
+  Wrench& operator+=(const Wrench& w) { return *this = *this + w; }  ///< about the same point
+  Wrench& operator-=(const Wrench& w) { return *this = *this - w; }  ///< about the same point
 
   /// The same wrench about a point P when it was about O; p_PO = O - P.
   Wrench ShiftedBy(const Vector3<T>& p_PO) const { return {force, moment + p_PO.cross(force)}; }

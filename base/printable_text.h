@@ -14,9 +14,9 @@ namespace vmech {
 
 /// The character at the front of a text, as UTF-8 has it.
 struct FrontCharacter {
-  size_t bytes = 0;  ///< that it takes; 0 if the text ends amid it
-  char32_t code = 0;
-  bool valid = false;
+  size_t bytes = 0;    ///< that it takes; 0 if the text ends amid it
+  char32_t code = 0;   ///< of Unicode
+  bool valid = false;  ///< the bytes are UTF-8
 };
 
 /// The first character of a text, which must not be empty.

@@ -26,7 +26,7 @@ class ClosedWalk {
   /// way ahead is barred it takes another. False, and no step, if there is none.
   bool Step(double size, double turn);
 
-  const VectorXd& q() const { return q_; }
+  const VectorXd& q() const { return q_; }  ///< [nq], loops closed
   /// The last step, of length 1 [nv]; its sign follows the walk.
   const VectorXd& direction() const { return direction_; }
 

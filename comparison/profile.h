@@ -13,8 +13,8 @@ namespace vmech {
 struct PerformanceProfile {
   /// Steps of one solver, ratios increasing: from `ratio[i]` on the share is `share[i]`.
   struct Curve {
-    std::vector<double> ratio, share;
-    double At(double tau) const;  ///< 0 before the first step
+    std::vector<double> ratio, share;  ///< [steps] both increasing
+    double At(double tau) const;       ///< 0 before the first step
   };
   std::vector<Curve> curves;  ///< per solver
   double largest_ratio = 1;   ///< of all solved problems

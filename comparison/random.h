@@ -11,14 +11,15 @@ namespace vmech {
 /// [Steele, Lea & Flood 2014], and nothing but sums and products of its outputs.
 class PortableRandom {
  public:
+  /// Any number; equal seeds give equal series.
   explicit PortableRandom(uint64_t seed) : state_(seed) {}
 
-  uint64_t Next();
+  uint64_t Next();                     ///< all 64 bits
   double Uniform();                    ///< in [0, 1), 53 bits
   double Between(double a, double b);  ///< in [a, b)
   int Below(int n);                    ///< 0 .. n - 1
   double Normal();  ///< mean 0, variance 1: twelve uniforms (Irwin-Hall), |x| < 6
-  VectorXd NormalVector(Eigen::Index n);
+  VectorXd NormalVector(Eigen::Index n);  ///< [n] of Normal()
 
  private:
   uint64_t state_;

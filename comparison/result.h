@@ -44,22 +44,22 @@ Branch BranchFromName(std::string_view name);    ///< @throws std::invalid_argum
 
 /// One problem and one solver. Of a path, counts and time are sums, errors the largest.
 struct Result {
-  ProblemId problem;
-  SolverEntry solver;
-  Verdict verdict = Verdict::kFailed;
-  std::string message;
-  int targets = 1;  ///< of a path; else 1
-  int reached = 0;  ///< of these
-  int jumps = 0;    ///< of a path: to another branch from one target to the next
-  int iterations = 0;
-  int evaluations = 0;
-  int jacobian_evaluations = 0;
-  double time = 0;         ///< median of the repetitions [s]
-  double e1_position = 0;  ///< from the grasp to the hand [m]
-  double e1_rotation = 0;  ///< [rad]; 0 for a point grasp
-  double e2 = 0;           ///< largest loop error [characteristic lengths, rad]
-  double kkt = 0;          ///< Summary::kkt_error
-  Branch branch = Branch::kUnknown;
+  ProblemId problem;                   ///< of the suite
+  SolverEntry solver;                  ///< that was asked
+  Verdict verdict = Verdict::kFailed;  ///< how it ended
+  std::string message;                 ///< of the solver; empty where it succeeded
+  int targets = 1;                     ///< of a path; else 1
+  int reached = 0;                     ///< of these
+  int jumps = 0;                       ///< of a path: to another branch from one target to the next
+  int iterations = 0;                  ///< of the solver's own count
+  int evaluations = 0;                 ///< of residuals
+  int jacobian_evaluations = 0;        ///< of residuals' Jacobians
+  double time = 0;                     ///< median of the repetitions [s]
+  double e1_position = 0;              ///< from the grasp to the hand [m]
+  double e1_rotation = 0;              ///< [rad]; 0 for a point grasp
+  double e2 = 0;                       ///< largest loop error [characteristic lengths, rad]
+  double kkt = 0;                      ///< Summary::kkt_error
+  Branch branch = Branch::kUnknown;    ///< assembly branch that was ended on
   /// From the target's own configuration, along what grasp or loops see (unseen_motions.h) [rad,
   /// characteristic lengths].
   double distance = 0;

@@ -15,14 +15,17 @@ namespace vmech {
 class SolverEntry {
  public:
   SolverEntry() = default;  ///< the first one
+  /// Any but the fast path.
   explicit SolverEntry(Backend backend) : place_(static_cast<int>(backend)) {}
-  static SolverEntry FastPath();
+  static SolverEntry FastPath();  ///< the tracker of hands
 
-  std::string_view name() const;
+  std::string_view name() const;  ///< as in tables and on the command line
   /// None for the fast path.
   std::optional<Backend> backend() const;
+  /// The fast path takes paths alone.
   bool Takes(const TargetBlock& block) const { return backend() || block.is_path(); }
 
+  /// In the order of tables.
   friend auto operator<=>(const SolverEntry&, const SolverEntry&) = default;  // NOLINT
 
  private:

@@ -10,13 +10,14 @@ namespace vmech {
 /// How a set of results came out. Problems that a mechanism does not have and solvers that are not
 /// installed do not count.
 struct Tally {
-  int problems = 0;
-  int succeeded = 0;  ///< as Succeeded()
-  int targets = 0;    ///< those of paths each by itself
-  int reached = 0;
-  int jumps = 0;
+  int problems = 0;        ///< those that count
+  int succeeded = 0;       ///< as Succeeded()
+  int targets = 0;         ///< those of paths each by itself
+  int reached = 0;         ///< of targets
+  int jumps = 0;           ///< of paths, to another branch
   int own = 0, other = 0;  ///< branches of what succeeded
 
+  /// `succeeded` over `problems`; 0 of none.
   double share() const { return problems == 0 ? 0 : double(succeeded) / problems; }
 };
 

@@ -35,47 +35,49 @@ std::string_view NameOf(StartKind start);
 /// Targets of one kind. Distances and steps are measured over all coordinates of the tree, in
 /// radians and characteristic lengths.
 struct TargetBlock {
-  std::string name;
-  TargetKind kind = TargetKind::kReachable;
-  StartKind start = StartKind::kNear;
-  int count = 1;                ///< problems per mechanism
-  double start_distance = 0.1;  ///< kNear: from the target's configuration
-  double offset = 0.1;          ///< kUnreachable: of the target from the grasp [lengths, rad]
-  double closeness = 1e-3;      ///< kSingular: largest smallest singular value; see target_maker.h
-  int steps = 50;               ///< kTracking, kDeadCentre: targets on the path
-  double step = 0.02;           ///< kTracking, kDeadCentre: from one to the next
+  std::string name;                          ///< unique in the suite
+  TargetKind kind = TargetKind::kReachable;  ///< where targets lie
+  StartKind start = StartKind::kNear;        ///< where solves start
+  int count = 1;                             ///< problems per mechanism
+  double start_distance = 0.1;               ///< kNear: from the target's configuration
+  double offset = 0.1;      ///< kUnreachable: of the target from the grasp [lengths, rad]
+  double closeness = 1e-3;  ///< kSingular: largest smallest singular value; see target_maker.h
+  int steps = 50;           ///< kTracking, kDeadCentre: targets on the path
+  double step = 0.02;       ///< kTracking, kDeadCentre: from one to the next
 
+  /// Targets that follow on one another.
   bool is_path() const { return kind == TargetKind::kTracking || kind == TargetKind::kDeadCentre; }
 };
 
 /// A mechanism of a suite.
 struct SuiteMechanism {
-  std::string name;  ///< unique in the suite
-  Mechanism mechanism;
+  std::string name;         ///< unique in the suite
+  Mechanism mechanism;      ///< assembled from its start values
   Grasp grasp;              ///< whose pose the targets are
   std::vector<int> blocks;  ///< of the suite, that this mechanism takes part in
 };
 
 /// What `vmech compare` is to compute: every block of every mechanism by every solver.
 struct Suite {
-  std::filesystem::path path;
-  std::string name;
-  std::string description;
-  uint64_t seed = 1;
-  StoppingRule stopping;
+  std::filesystem::path path;  ///< of the suite's file
+  std::string name;            ///< of the suite
+  std::string description;     ///< free text, may be empty
+  uint64_t seed = 1;           ///< of all random numbers
+  StoppingRule stopping;       ///< the same for every solver
   /// Largest distance of grasp and hand that counts as reached [characteristic lengths, rad].
   double reach_tolerance = 1e-6;
-  int repetitions = 3;  ///< solves whose median time is reported
-  std::vector<SuiteMechanism> mechanisms;
-  std::vector<TargetBlock> blocks;
-  uint64_t digest = 0;  ///< of the suite's file and of those it names
+  int repetitions = 3;                     ///< solves whose median time is reported
+  std::vector<SuiteMechanism> mechanisms;  ///< in the order of the file
+  std::vector<TargetBlock> blocks;         ///< in the order of the file
+  uint64_t digest = 0;                     ///< of the suite's file and of those it names
 };
 
 /// One problem of a suite, by indices.
 struct ProblemId {
-  int mechanism = 0;
-  int block = 0;
-  int index = 0;
+  int mechanism = 0;  ///< index in Suite::mechanisms
+  int block = 0;      ///< index in Suite::blocks
+  int index = 0;      ///< counted from 0, below TargetBlock::count
+  /// In the order of tables.
   friend auto operator<=>(const ProblemId&, const ProblemId&) = default;  // NOLINT
 };
 

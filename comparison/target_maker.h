@@ -18,10 +18,10 @@ class Subject {
   Subject(const Subject&) = delete;
   Subject& operator=(const Subject&) = delete;
 
-  const KinematicTree& tree() const { return tree_; }
-  InverseKinematics& problem() { return problem_; }
+  const KinematicTree& tree() const { return tree_; }   ///< of the assembled mechanism
+  InverseKinematics& problem() { return problem_; }     ///< pose of the grasp as the target
   const VectorXd& q_start() const { return q_start_; }  ///< closed
-  ClosedWalk WalkFrom(const VectorXd& q, PortableRandom* random) const;
+  ClosedWalk WalkFrom(const VectorXd& q, PortableRandom* random) const;  ///< q closed
 
   /// The grasp's motions, J Z [rows of e1, mobility], in radians and characteristic lengths.
   MatrixXd GraspMotions(const VectorXd& q);

@@ -24,15 +24,15 @@ bool Rotates(JointType type);
 
 /// Which lengths of LoadFriction a joint type has a use for.
 struct FrictionKeys {
-  bool radius, thrust_radius, length, width;
+  bool radius, thrust_radius, length, width;  ///< each: has a use for it
 };
 /// Of a joint of a type.
 FrictionKeys FrictionKeysOf(JointType type);
 
 /// A turn about, or a shift along, an axis of the joint's frame: 0, 1, 2 for x, y, z.
 struct ElementaryFreedom {
-  bool rotates;
-  int axis;
+  bool rotates;  ///< a turn, else a shift
+  int axis;      ///< 0, 1, 2 for x, y, z
 };
 
 /// The freedoms of a joint in the order of its lists, from its first anchor to its second: X_FM is

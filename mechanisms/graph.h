@@ -13,7 +13,7 @@ struct SpanningTree {
   struct Branch {
     int joint;        ///< index in Mechanism::joints
     int parent_link;  ///< nearer to the ground
-    int child_link;
+    int child_link;   ///< the other one
   };
   std::vector<Branch> branches;  ///< parents before children, depth first
   std::vector<int> cuts;         ///< indices of the cut joints, in file order

@@ -26,9 +26,9 @@ Matrix3d InertiaAboutCenterOfGravity(const Matrix3d& I_P, double mass, const Vec
 /// it [kg m^2] in some frame.
 template <typename T>
 struct BodyNumbers {
-  T mass = T(0);
-  Vector3<T> p_cm = Vector3<T>::Zero();
-  Matrix3<T> I_cm = Matrix3<T>::Zero();
+  T mass = T(0);                         ///< [kg]
+  Vector3<T> p_cm = Vector3<T>::Zero();  ///< centre of gravity [m]
+  Matrix3<T> I_cm = Matrix3<T>::Zero();  ///< about it [kg m^2]
 };
 /// A body, given in a frame B, in the frame A.
 template <typename T>

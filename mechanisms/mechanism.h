@@ -24,21 +24,21 @@ struct MassProperties {
 /// A frame on a link at which joints are made: z is the axis of rotation or translation, the
 /// origin is the joint centre (paper section 3).
 struct Anchor {
-  std::string name;
-  Posed X_LA;  ///< pose in the link's drawing frame
+  std::string name;  ///< unique on its link
+  Posed X_LA;        ///< pose in the link's drawing frame
 };
 
 /// A part that moves as one piece.
 struct Link {
-  std::string name;
-  MassProperties mass_properties;
-  std::vector<Anchor> anchors;
+  std::string name;                ///< unique in the mechanism
+  MassProperties mass_properties;  ///< in its drawing frame
+  std::vector<Anchor> anchors;     ///< where joints hold it
 };
 
 /// One anchor of one link, by index.
 struct AnchorId {
-  int link = -1;
-  int anchor = -1;
+  int link = -1;    ///< index in Mechanism::links
+  int anchor = -1;  ///< index in Link::anchors
 };
 
 /// A linear spring and the dry and viscous friction along one freedom of a joint.
@@ -75,16 +75,16 @@ using LoadFriction = LoadFrictionOf<double>;
 /// coordinates zero the two anchors coincide; the coordinates describe the pose of the second
 /// anchor M in the first anchor F.
 struct Joint {
-  std::string name;
-  JointType type = JointType::kRevolute;
-  AnchorId first;                    ///< F
-  AnchorId second;                   ///< M
-  double pitch = 0;                  ///< kScrew: travel per radian [m/rad]
-  std::vector<double> start;         ///< coordinates at the start; CoordinatesOf(type) values
+  std::string name;                       ///< unique in the mechanism
+  JointType type = JointType::kRevolute;  ///< decides its freedoms
+  AnchorId first;                         ///< F
+  AnchorId second;                        ///< M
+  double pitch = 0;                       ///< kScrew: travel per radian [m/rad]
+  std::vector<double> start;              ///< coordinates at the start; CoordinatesOf(type) values
   bool start_given = false;          ///< the file states the start; else it is free to be anywhere
   std::vector<double> lower, upper;  ///< limits per freedom; infinite where there is none
   std::vector<Passive> passive;      ///< per freedom
-  LoadFriction load_friction;
+  LoadFriction load_friction;        ///< dry friction in proportion to its load
   /// Stiffness of the joint against x, y, z [N/m] and about x, y, z [N m/rad], axes of F, for the
   /// `stiffness` rule. Entries along freedoms are not used.
   std::optional<Vector6d> stiffness;
@@ -95,10 +95,10 @@ enum class GraspKind { kRigid, kPoint };
 
 /// A frame G on a link by which a hand holds the mechanism.
 struct Grasp {
-  std::string name;
-  int link = -1;
-  Posed X_LG;
-  GraspKind kind = GraspKind::kRigid;
+  std::string name;                    ///< unique in the mechanism
+  int link = -1;                       ///< index in Mechanism::links
+  Posed X_LG;                          ///< pose in the link's drawing frame
+  GraspKind kind = GraspKind::kRigid;  ///< a point is held by force alone
 };
 
 /// The units in which a file speaks, for what is said about it; the mechanism itself is in SI.
@@ -109,18 +109,19 @@ struct DisplayUnits {
 
 /// The immutable description of a mechanism. Names are unique within their list.
 struct Mechanism {
-  std::string name;
-  DisplayUnits units;
+  std::string name;                       ///< of the file; may be empty
+  DisplayUnits units;                     ///< of messages; not of this description
   Vector3d gravity_W = Vector3d::Zero();  ///< [m/s^2], world axes = drawing axes of the ground link
   int ground = 0;                         ///< index of the ground link
-  std::vector<Link> links;
-  std::vector<Joint> joints;
-  std::vector<Grasp> grasps;
-  std::vector<int> preferred_cuts;  ///< joints that the author wants to be cut
+  std::vector<Link> links;                ///< the ground is one of them
+  std::vector<Joint> joints;              ///< in the order of the file
+  std::vector<Grasp> grasps;              ///< where hands may hold it
+  std::vector<int> preferred_cuts;        ///< joints that the author wants to be cut
   /// How far anchors may be off, root mean square, by the rounding of their figures, for loops to
   /// count as closed [characteristic lengths, rad], in [0, kWidestTolerance].
   double tolerance = 1e-4;
 
+  /// it must exist
   const Anchor& anchor(AnchorId id) const { return links[id.link].anchors[id.anchor]; }
 };
 

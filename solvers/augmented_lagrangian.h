@@ -23,15 +23,15 @@ struct AugmentedLagrangianOptions {
   /// `Solve` (not `Step`) uses the problem's second derivatives if it has them: it then converges
   /// where Gauss-Newton crawls, at the price of one Curvature() an iteration.
   bool use_second_derivatives = true;
-  StoppingRule stopping;
+  StoppingRule stopping;  ///< when it counts as solved
 
-  void Validate() const;
+  void Validate() const;  ///< @throws std::invalid_argument naming field, value and range
 };
 
 /// Memory of the augmented Lagrangian, made once for a problem.
 struct AugmentedLagrangianWorkspace {
-  explicit AugmentedLagrangianWorkspace(const ConstrainedLeastSquares& problem);
-  WeightedStep step;
+  explicit AugmentedLagrangianWorkspace(const ConstrainedLeastSquares& problem);  ///< of its sizes
+  WeightedStep step;     ///< of one descent
   VectorXd multipliers;  ///< the running mu: kept between calls, zero at first
 };
 

@@ -13,10 +13,10 @@ using Eigen::VectorXd;
 /// lower <= x[coordinate] <= upper, for a coordinate that a step changes by plain addition:
 /// Plus(x, dx)[coordinate] = x[coordinate] + dx[tangent].
 struct Bound {
-  int coordinate = 0;
-  int tangent = 0;
-  double lower = -std::numeric_limits<double>::infinity();
-  double upper = std::numeric_limits<double>::infinity();
+  int coordinate = 0;                                       ///< index in x
+  int tangent = 0;                                          ///< index in dx
+  double lower = -std::numeric_limits<double>::infinity();  ///< in the coordinate's unit
+  double upper = std::numeric_limits<double>::infinity();   ///< in the coordinate's unit
 };
 
 /// How many numbers the parts of a problem have.
@@ -41,8 +41,8 @@ class ConstrainedLeastSquares {
   explicit ConstrainedLeastSquares(const ProblemSizes& sizes, std::vector<Bound> bounds = {});
   virtual ~ConstrainedLeastSquares() = default;
 
-  const ProblemSizes& sizes() const { return sizes_; }
-  const std::vector<Bound>& bounds() const { return bounds_; }
+  const ProblemSizes& sizes() const { return sizes_; }          ///< of r, x, dx and c
+  const std::vector<Bound>& bounds() const { return bounds_; }  ///< empty: x is free
 
   /// Writes r, J = dr/dx, c and C = dc/dx at x into memory of the right size; a null pointer
   /// means "not wanted". Must not throw; where the problem is not defined it writes NaN. The

@@ -14,10 +14,10 @@ struct StepReport {
 
 /// What the allocation-free solve did. Its claim is unjudged.
 struct FastOutcome {
-  SolveStatus claim = SolveStatus::kNotRun;
-  int iterations = 0;
-  double constraint_norm = 0;  ///< max |c_i|
-  double bias_bound = 0;       ///< |c|_2 is at most this
+  SolveStatus claim = SolveStatus::kNotRun;  ///< of the method itself
+  int iterations = 0;                        ///< steps
+  double constraint_norm = 0;                ///< max |c_i|
+  double bias_bound = 0;                     ///< |c|_2 is at most this
 };
 
 }  // namespace vmech

@@ -12,9 +12,9 @@ namespace vmech {
 /// than the arithmetic behind them. All memory is taken by the constructor.
 class NormalEquations {
  public:
-  explicit NormalEquations(int unknowns);
+  explicit NormalEquations(int unknowns);  ///< n, the size of g
 
-  int size() const noexcept { return static_cast<int>(g.size()); }
+  int size() const noexcept { return static_cast<int>(g.size()); }  ///< unknowns
 
   /// H and g at a point; forces = mu + w c there.
   void Form(const Linearization& at_x, double weight, const VectorXd& forces) noexcept;
@@ -26,10 +26,10 @@ class NormalEquations {
   /// x = (H + diag(damping))^-1 x, zero where held.
   void Solve(VectorXd* x) const noexcept;
 
-  MatrixXd H;  ///< lower triangle
-  VectorXd g;
-  VectorXd objective_gradient;  ///< J'r, the first part of g
-  Eigen::Matrix<bool, Eigen::Dynamic, 1> held;
+  MatrixXd H;                                   ///< lower triangle
+  VectorXd g;                                   ///< J'r + C' forces [n]
+  VectorXd objective_gradient;                  ///< J'r, the first part of g
+  Eigen::Matrix<bool, Eigen::Dynamic, 1> held;  ///< [n] those that Solve leaves where they are
 
  private:
   struct Kernels;

@@ -15,9 +15,9 @@ namespace vmech {
 /// some ten unknowns. All memory is taken by the constructor.
 class NullMotions {
  public:
-  using Held = Eigen::Matrix<bool, Eigen::Dynamic, 1>;
+  using Held = Eigen::Matrix<bool, Eigen::Dynamic, 1>;  ///< [unknowns] true: stays where it is
 
-  explicit NullMotions(int unknowns);
+  explicit NullMotions(int unknowns);  ///< the size of a step
 
   /// At a point; unknowns that are held do not move.
   void Find(const Linearization& at_x, const Held& held) noexcept;
@@ -25,7 +25,7 @@ class NullMotions {
   /// Forgets how few there were elsewhere: another solve begins.
   void ForgetFewest() noexcept { least_ = static_cast<int>(A_.rows()); }
 
-  int count() const noexcept { return count_; }
+  int count() const noexcept { return count_; }  ///< how many were found
   /// One of them, of length 1 and square to the others.
   auto motion(int k) const noexcept { return N_.col(k); }
 

@@ -26,17 +26,19 @@ struct NullspaceOptions {
   double max_step = std::numeric_limits<double>::infinity();
   /// Use the problem's second derivatives if it has them: quadratic convergence.
   bool use_second_derivatives = true;
-  StoppingRule stopping;
+  StoppingRule stopping;  ///< when it counts as solved
 
-  void Validate() const;
+  void Validate() const;  ///< @throws std::invalid_argument naming field, value and range
 };
 
 /// What a solve works with; for problems of the sizes of one. A first solve, and the first that
 /// meets bounds, may take more memory.
 class NullspaceWorkspace {
  public:
-  explicit NullspaceWorkspace(const ConstrainedLeastSquares& problem);
+  explicit NullspaceWorkspace(const ConstrainedLeastSquares& problem);  ///< of its sizes
+  /// The other can only be destroyed or assigned.
   NullspaceWorkspace(NullspaceWorkspace&&) noexcept;
+  /// The other can only be destroyed or assigned.
   NullspaceWorkspace& operator=(NullspaceWorkspace&&) noexcept;
   ~NullspaceWorkspace();
 

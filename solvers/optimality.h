@@ -9,12 +9,12 @@ namespace vmech {
 
 /// r, c and their Jacobians at one point.
 struct Linearization {
-  VectorXd r, c;
-  MatrixXd J, C;
+  VectorXd r, c;  ///< objective's rows, constraints' rows
+  MatrixXd J, C;  ///< by the tangent, [rows, tangents]
 
-  explicit Linearization(const ProblemSizes& sizes);
-  void Evaluate(ConstrainedLeastSquares& problem, const VectorXd& x);
-  bool AllFinite() const;
+  explicit Linearization(const ProblemSizes& sizes);                   ///< sized, not evaluated
+  void Evaluate(ConstrainedLeastSquares& problem, const VectorXd& x);  ///< at x
+  bool AllFinite() const;                    ///< no NaN in it, and nothing infinite
   void Swap(Linearization* other) noexcept;  ///< exchanges memory, copies nothing
 };
 
@@ -22,15 +22,15 @@ struct Linearization {
 struct Optimality {
   double objective = 0;        ///< 1/2 |r|^2
   double constraint_norm = 0;  ///< max |c_i|
-  double bound_violation = 0;
+  double bound_violation = 0;  ///< max of lower - x, x - upper and 0
   /// max of |J'r + C'mu + z| and of the complementarity |z_i| (distance to the bound), over
   /// max(1, max |J'r|). mu and z minimise |J'r + C'mu + z| under the signs that z must have, so
   /// no multiplier of a back end enters.
   double kkt_error = 0;
   /// |C'c| over |c| max(|C|, |c|), bounds allowed for: near 0 where |c| is stationary but not zero.
   double infeasibility_slope = 1;
-  VectorXd multipliers;
-  VectorXd bound_multipliers;
+  VectorXd multipliers;        ///< mu, one per row of c
+  VectorXd bound_multipliers;  ///< z, one per bound of the problem
 };
 
 /// Measures optimality. Takes memory only where a problem is larger than all before.

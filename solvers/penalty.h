@@ -22,16 +22,16 @@ struct PenaltyOptions {
   double damping = 1e-12;
   /// Longest step, max |dx_i| [unit of the tangent], > 0. Lower it to stay on one branch.
   double max_step = std::numeric_limits<double>::infinity();
-  StoppingRule stopping;
+  StoppingRule stopping;  ///< when it counts as solved
 
-  void Validate() const;
+  void Validate() const;  ///< @throws std::invalid_argument naming field, value and range
 };
 
 /// Memory of the penalty method, made once for a problem.
 struct PenaltyWorkspace {
-  explicit PenaltyWorkspace(const ConstrainedLeastSquares& problem);
-  WeightedStep step;
-  VectorXd no_multipliers;  ///< stays zero
+  explicit PenaltyWorkspace(const ConstrainedLeastSquares& problem);  ///< of its sizes
+  WeightedStep step;                                                  ///< of paper eq. (8)
+  VectorXd no_multipliers;                                            ///< stays zero
 };
 
 /// One step of paper eq. (8) from *x, undivided: bounded work, no allocation.

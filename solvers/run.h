@@ -13,6 +13,7 @@ namespace vmech {
 /// A problem that counts how often it is evaluated, and is otherwise the one given.
 class CountedProblem final : public ConstrainedLeastSquares {
  public:
+  /// Keeps a reference.
   explicit CountedProblem(ConstrainedLeastSquares& problem)
       : ConstrainedLeastSquares(problem.sizes(), problem.bounds()), problem_(problem) {}
 
@@ -29,8 +30,8 @@ class CountedProblem final : public ConstrainedLeastSquares {
     problem_.Curvature(x, mu, S);
   }
 
-  int evaluations = 0;
-  int jacobian_evaluations = 0;
+  int evaluations = 0;           ///< of r or c
+  int jacobian_evaluations = 0;  ///< of J or C
 
  private:
   ConstrainedLeastSquares& problem_;
@@ -38,10 +39,10 @@ class CountedProblem final : public ConstrainedLeastSquares {
 
 /// What a back end says of itself when it stops. Run() has the last word on the status.
 struct Outcome {
-  SolveStatus claim = SolveStatus::kStalled;
-  std::string message;
-  int iterations = 0;
-  double bias_bound = 0;
+  SolveStatus claim = SolveStatus::kStalled;  ///< before it is judged
+  std::string message;                        ///< why it stopped
+  int iterations = 0;                         ///< of its own count
+  double bias_bound = 0;                      ///< penalty only: |c|_2 is at most this
 };
 
 /// How a package solves a problem: x is its start, and afterwards where it ended.

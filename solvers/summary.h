@@ -29,26 +29,28 @@ std::string_view NameOf(SolveStatus status);
 /// tangents: z >= 0 at an upper bound, z <= 0 at a lower one. Of redundant rows the multipliers of
 /// least norm are given.
 struct Summary {
-  std::string solver;
-  SolveStatus status = SolveStatus::kNotRun;
-  std::string message = "not run";
-  Eigen::VectorXd x;                  ///< the best point found, always finite
-  Eigen::VectorXd multipliers;        ///< one per row of c
-  Eigen::VectorXd bound_multipliers;  ///< one per bound of the problem
-  double objective = kUnknown;        ///< 1/2 |r|^2
-  double constraint_norm = kUnknown;  ///< max |c_i|
-  double bound_violation = kUnknown;  ///< max of lower - x, x - upper and 0
-  double kkt_error = kUnknown;        ///< max |J'r + C'mu + z| / max(1, max |J'r|)
-  double bias_bound = 0;              ///< penalty only: |c|_2 is at most this
-  int iterations = 0;
-  int evaluations = 0;           ///< of r or c
-  int jacobian_evaluations = 0;  ///< of J or C
-  double seconds = 0;            ///< wall time of the solve, our judgement left out
+  std::string solver;                         ///< as on the command line
+  SolveStatus status = SolveStatus::kNotRun;  ///< how the solve ended, as judged here
+  std::string message = "not run";            ///< why, a sentence
+  Eigen::VectorXd x;                          ///< the best point found, always finite
+  Eigen::VectorXd multipliers;                ///< one per row of c
+  Eigen::VectorXd bound_multipliers;          ///< one per bound of the problem
+  double objective = kUnknown;                ///< 1/2 |r|^2
+  double constraint_norm = kUnknown;          ///< max |c_i|
+  double bound_violation = kUnknown;          ///< max of lower - x, x - upper and 0
+  double kkt_error = kUnknown;                ///< max |J'r + C'mu + z| / max(1, max |J'r|)
+  double bias_bound = 0;                      ///< penalty only: |c|_2 is at most this
+  int iterations = 0;                         ///< of the solver's own count
+  int evaluations = 0;                        ///< of r or c
+  int jacobian_evaluations = 0;               ///< of J or C
+  double seconds = 0;                         ///< wall time of the solve, our judgement left out
 
+  /// X is a solution within the stopping rule.
   bool converged() const { return status == SolveStatus::kConverged; }
   std::string BriefReport() const;  ///< one line
   std::string FullReport() const;   ///< one page
 
+  /// Of figures that a solve has not come to.
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 };
 

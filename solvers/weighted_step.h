@@ -22,7 +22,7 @@ namespace vmech {
 /// the constructor; nothing else here allocates or throws.
 class WeightedStep {
  public:
-  explicit WeightedStep(const ConstrainedLeastSquares& problem);
+  explicit WeightedStep(const ConstrainedLeastSquares& problem);  ///< of its sizes
 
   /// Evaluates the problem at x, then H and g. False if anything is not finite.
   [[nodiscard]] bool Linearize(ConstrainedLeastSquares& problem, const VectorXd& x, double lambda,
@@ -54,9 +54,9 @@ class WeightedStep {
 
   /// How a descent ended.
   struct Descent {
-    bool ok = false;  ///< false: values that are not finite, or no step that descends
-    bool stationary = false;
-    int iterations = 0;
+    bool ok = false;          ///< false: values that are not finite, or no step that descends
+    bool stationary = false;  ///< the gradient is below the tolerance
+    int iterations = 0;       ///< steps
   };
   /// Levenberg-Marquardt on phi from *x until the largest entry of its gradient (held coordinates
   /// left out) is below tolerance * max(1, |J'r|), no step descends, or max_iterations are spent.

@@ -13,13 +13,13 @@ namespace vmech {
 /// commas below; blank lines and those that begin with # are passed over. Not accepted: rows of
 /// another length, values that are not finite numbers, a first column that does not increase.
 struct CsvTable {
-  std::string file;
-  std::vector<std::string> names;
-  int names_line = 0;
+  std::string file;                          ///< for messages
+  std::vector<std::string> names;            ///< of columns, unique
+  int names_line = 0;                        ///< in the file, counted from 1
   std::vector<std::vector<double>> columns;  ///< by name
   std::vector<int> lines;                    ///< of each row
 
-  size_t rows() const { return lines.size(); }
+  size_t rows() const { return lines.size(); }  ///< without the names'
   /// A column by its name; null if there is none.
   const std::vector<double>* Find(std::string_view name) const;
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <stdexcept>
 #include <utility>
 
@@ -81,28 +82,44 @@ class DesignProgram final : public NonlinearProgram {
   }
 
   bool Evaluate(const VectorXd& x, double* f, VectorXd* df, VectorXd* g, MatrixXd* dg) override {
-    if (stopped_ || (options_.progress && !options_.progress(++evaluations_))) stopped_ = true;
-    Sensitivities result;
-    try {
-      if (stopped_) return false;
-      result = FiguresAt(x, figures_);
-    } catch (const std::exception&) {
-      return false;
-    }
-    const FigureSlopes& objective = result.figures[0];
-    if (objective_scale_ == 0) objective_scale_ = std::abs(objective.value);
+    if (stopped_) return false;
+    const EvaluatedDesign design = Look(x);
+    if (!design.defined) return false;
+    const auto slopes_of = [&](size_t figure) {
+      return Eigen::Map<const VectorXd>(design.slopes[figure].data(), df->size());
+    };
+    if (objective_scale_ == 0) objective_scale_ = std::abs(design.figures[0]);
     if (objective_scale_ == 0) objective_scale_ = 1;
-    const double sign = (task_.maximise ? -1 : 1) / objective_scale_;
-    *f = sign * objective.value;
-    *df = sign * Eigen::Map<const VectorXd>(objective.slopes.data(), df->size());
+    *f = InSearch(design.figures[0]);
+    *df = SlopeInSearch(design.figures[0]) * slopes_of(0);
     for (Eigen::Index i = 0; i < g->size(); ++i) {
-      const FigureSlopes& figure = result.figures[static_cast<size_t>(i) + 1];
-      const double scale = ConstraintScale(static_cast<size_t>(i));
-      (*g)[i] = (figure.value - task_.constraints[static_cast<size_t>(i)].limit) * scale;
-      dg->row(i) = scale * Eigen::Map<const VectorXd>(figure.slopes.data(), df->size()).transpose();
+      const size_t c = static_cast<size_t>(i);
+      (*g)[i] = (design.figures[c + 1] - task_.constraints[c].limit) * ConstraintScale(c);
+      dg->row(i) = ConstraintScale(c) * slopes_of(c + 1).transpose();
     }
-    return std::isfinite(*f) && df->allFinite() && g->allFinite() && dg->allFinite();
+    return true;
   }
+
+  /// The objective as it is searched, which is to be small.
+  double InSearch(double objective) const {
+    const double share = objective / objective_scale_;
+    return (task_.maximise ? -1 : 1) * (squared() ? share * share : share);
+  }
+  double SlopeInSearch(double objective) const {
+    const double slope = (squared() ? 2 * objective / objective_scale_ : 1) / objective_scale_;
+    return (task_.maximise ? -1 : 1) * slope;
+  }
+
+  /// From one start. @throws what DesignOptions::progress has thrown.
+  ProgramResult Search(const VectorXd& x) {
+    ProgramResult found = Minimise(*this, options_.program, x);
+    if (error_) std::rethrow_exception(error_);
+    return found;
+  }
+
+  bool stopped() const { return stopped_; }
+  bool smooths_a_peak() const { return figures_[0].reduction == Reduction::kSmoothPeak; }
+  void SetPower(double power) { figures_[0].power = power; }
 
   double ConstraintScale(size_t i) const {
     const DesignConstraint& constraint = task_.constraints[i];
@@ -110,9 +127,52 @@ class DesignProgram final : public NonlinearProgram {
     return (constraint.at_least ? -1 : 1) / size;
   }
 
-  double objective_scale() const { return objective_scale_; }
-
  private:
+  bool squared() const { return figures_[0].reduction == Reduction::kRms; }
+
+  /// What a search that went this way has computed; else it is computed.
+  EvaluatedDesign Look(const VectorXd& x) {
+    EvaluatedDesign design{{x.begin(), x.end()}, false, {}, {}};
+    if (known_ < options_.known.size() && IsOf(options_.known[known_], design.values)) {
+      return options_.known[known_++];
+    }
+    known_ = options_.known.size();
+    Compute(x, &design);
+    Tell(design);
+    return design;
+  }
+
+  bool IsOf(const EvaluatedDesign& known, const std::vector<double>& values) const {
+    return known.values == values && (!known.defined || known.figures.size() == figures_.size());
+  }
+
+  /// What is thrown waits until the package has ended, through which it cannot pass.
+  void Tell(const EvaluatedDesign& design) {
+    try {
+      stopped_ = options_.progress && !options_.progress(design);
+    } catch (...) {
+      stopped_ = true;
+      error_ = std::current_exception();
+    }
+  }
+
+  void Compute(const VectorXd& x, EvaluatedDesign* design) const {
+    std::vector<FigureSlopes> figures;
+    try {
+      figures = FiguresAt(x, figures_).figures;
+    } catch (const std::exception&) {
+      return;
+    }
+    design->defined = true;
+    for (FigureSlopes& figure : figures) {
+      const Eigen::Map<const VectorXd> slopes(figure.slopes.data(), x.size());
+      if (!std::isfinite(figure.value) || !slopes.allFinite()) design->defined = false;
+      design->figures.push_back(figure.value);
+      design->slopes.push_back(std::move(figure.slopes));
+    }
+    if (!design->defined) design->figures.clear(), design->slopes.clear();
+  }
+
   static VectorXd BoundsOf(const DesignTask& task, double DesignVariable::*bound) {
     VectorXd bounds(static_cast<Eigen::Index>(task.variables.size()));
     for (Eigen::Index k = 0; k < bounds.size(); ++k) {
@@ -128,8 +188,9 @@ class DesignProgram final : public NonlinearProgram {
   std::vector<Figure> figures_;
   std::vector<StudyParameter> parameters_;
   double objective_scale_ = 0;
-  int evaluations_ = 0;
+  size_t known_ = 0;  // of DesignOptions::known, those that were passed
   bool stopped_ = false;
+  std::exception_ptr error_;
 };
 
 void RequireInBounds(const DesignTask& task) {
@@ -172,6 +233,19 @@ bool IsBetter(const ProgramResult& a, const ProgramResult& b) {
   return a.feasible ? a.f < b.f : a.g.maxCoeff() < b.g.maxCoeff();
 }
 
+/// From the best design by a smooth peak to that by the peak itself: by powers that rise, each from
+/// where the last one ended.
+void Sharpen(DesignProgram* program, ProgramResult* best, int* evaluations) {
+  if (!program->smooths_a_peak() || !best->defined) return;
+  for (const double power : {512, 8192}) {
+    if (program->stopped()) return;
+    program->SetPower(power);
+    const ProgramResult sharper = program->Search(best->x);
+    *evaluations += sharper.evaluations;
+    if (sharper.defined && sharper.feasible >= best->feasible) *best = sharper;
+  }
+}
+
 }  // namespace
 
 DesignResult OptimiseDesign(const StudyFile& file, const StudyOutcome& outcome,
@@ -182,14 +256,15 @@ DesignResult OptimiseDesign(const StudyFile& file, const StudyOutcome& outcome,
   const VectorXd x0 = StartOf(task, 0);
   result.before = ValuesAt(program, task, x0);
   ProgramResult best;
-  for (int start = 0; start < options.starts; ++start) {
-    const ProgramResult found = Minimise(program, options.program, StartOf(task, start));
+  for (int start = 0; start < options.starts && !program.stopped(); ++start) {
+    const ProgramResult found = program.Search(StartOf(task, start));
     result.evaluations += found.evaluations;
     DesignRun run{{found.x.begin(), found.x.end()}, 0, found.feasible, found.message};
     if (found.defined) run.objective = ValuesAt(program, task, found.x)[0];
     result.runs.push_back(std::move(run));
     if (start == 0 || IsBetter(found, best)) best = found;
   }
+  Sharpen(&program, &best, &result.evaluations);
   result.values.assign(best.x.begin(), best.x.end());
   result.after = ValuesAt(program, task, best.x);
   result.best = program.At(best.x);
@@ -199,11 +274,15 @@ DesignResult OptimiseDesign(const StudyFile& file, const StudyOutcome& outcome,
   }
   result.feasible = best.feasible;
   result.optimality = best.optimality;
+  // A multiplier is by how much the objective of the search falls. Its own slope is nothing where a
+  // root mean square is zero: there is nothing to gain.
+  const double slope = std::abs(program.SlopeInSearch(result.after[0]));
+  const double gain = slope > 0 ? 1 / slope : 0;
   for (Eigen::Index i = 0; i < best.lambda.size(); ++i) {
     const double scale = std::abs(program.ConstraintScale(static_cast<size_t>(i)));
-    result.gain_by_limit.push_back(best.lambda[i] * scale * program.objective_scale());
+    result.gain_by_limit.push_back(best.lambda[i] * scale * gain);
   }
-  for (double mu : best.mu) result.gain_by_bound.push_back(mu * program.objective_scale());
+  for (double mu : best.mu) result.gain_by_bound.push_back(mu * gain);
   return result;
 }
 

@@ -6,12 +6,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <span>
 #include <stdexcept>
+#include <utility>
 
 #include "vmech/dynamics/bearings/life_slope.h"
 #include "vmech/dynamics/bearings/rating_life.h"
 #include "vmech/dynamics/loads/load_peaks.h"
+#include "vmech/dynamics/loads/motion/transmission_angle.h"
 #include "vmech/dynamics/loads/open_components.h"
 #include "vmech/mechanisms/freedoms.h"
 #include "vmech/studies/read_motion.h"
@@ -19,7 +22,6 @@
 namespace vmech {
 namespace {
 
-constexpr double kSmoothPower = 32;
 constexpr std::array<const char*, 6> kComponents{"fx", "fy", "fz", "mx", "my", "mz"};
 
 Dual Size(const Dual* v) {
@@ -34,38 +36,65 @@ Dual HeldMoment(JointType type, const Dual* moment) {
   return Size(held);
 }
 
+/// From where a study wants a grasp at a pose.
+Dual DistanceFromPath(const WantedPath& path, const LoadDerivatives& loads, size_t i) {
+  const size_t grasps = loads.grasps.size() / loads.poses() / 3;
+  const Dual* p = &loads.grasps[3 * (i * grasps + static_cast<size_t>(path.grasp))];
+  const Vector3d& wanted = path.points[static_cast<size_t>(loads.pose_number(i))];
+  const Dual d[] = {p[0] - wanted.x(), p[1] - wanted.y(), p[2] - wanted.z()};
+  return Size(d);
+}
+
+/// pi/2 - mu, in degrees.
+Dual TransmissionDeviation(const std::array<int, 4>& joints, const Mechanism& mechanism,
+                           const LoadDerivatives& loads, size_t i) {
+  constexpr double kDegree = std::numbers::pi / 180;
+  PlanarLoop<Dual> loop;
+  for (size_t k = 0; k < joints.size(); ++k) {
+    const auto joint = static_cast<size_t>(joints[k]);
+    const Dual* axis = &loads.axes[6 * (i * loads.joints() + joint)];
+    loop.points[k] = Vector3<Dual>(axis[0], axis[1], axis[2]);
+    loop.axes[k] = Vector3<Dual>(axis[3], axis[4], axis[5]);
+    loop.turns[k] = mechanism.joints[joint].type == JointType::kRevolute;
+  }
+  return 90 - loop.TransmissionAngle() / kDegree;
+}
+
+/// What a figure is at one of the poses.
+Dual ValueAt(const Figure& figure, const StudyFile& file, const LoadDerivatives& loads, size_t i) {
+  const Mechanism& mechanism = file.study.mechanism;
+  const auto index = static_cast<size_t>(figure.index);
+  switch (figure.kind) {
+    case FigureKind::kForce:
+      return Size(&loads.wrenches[6 * (i * loads.joints() + index)]);
+    case FigureKind::kMoment:
+      return HeldMoment(mechanism.joints[index].type,
+                        &loads.wrenches[6 * (i * loads.joints() + index) + 3]);
+    case FigureKind::kDrive:
+      return abs(loads.drive_forces[i * loads.drive_forces.size() / loads.poses() + index]);
+    case FigureKind::kGroundForce:
+      return Size(&loads.ground_forces[3 * i]);
+    case FigureKind::kPathError:
+      return DistanceFromPath(file.paths[index], loads, i);
+    case FigureKind::kTransmission:
+      return TransmissionDeviation(figure.loop, mechanism, loads, i);
+    case FigureKind::kLife:
+    case FigureKind::kMass:
+      break;
+  }
+  return 0;
+}
+
+bool IsCourse(const Figure& figure) {
+  return figure.kind != FigureKind::kLife && figure.kind != FigureKind::kMass;
+}
+
 /// What a figure is at every pose; empty for those that are no course.
-std::vector<Dual> CourseOf(const Figure& figure, const Mechanism& mechanism,
+std::vector<Dual> CourseOf(const Figure& figure, const StudyFile& file,
                            const LoadDerivatives& loads) {
   std::vector<Dual> course;
-  const auto index = static_cast<size_t>(figure.index);
-  for (size_t i = 0; i < loads.poses(); ++i) {
-    switch (figure.kind) {
-      case FigureKind::kForce:
-        course.push_back(Size(&loads.wrenches[6 * (i * loads.joints() + index)]));
-        break;
-      case FigureKind::kMoment:
-        course.push_back(HeldMoment(mechanism.joints[index].type,
-                                    &loads.wrenches[6 * (i * loads.joints() + index) + 3]));
-        break;
-      case FigureKind::kDrive:
-        course.push_back(
-            abs(loads.drive_forces[i * loads.drive_forces.size() / loads.poses() + index]));
-        break;
-      case FigureKind::kGroundForce:
-        course.push_back(Size(&loads.ground_forces[3 * i]));
-        break;
-      case FigureKind::kPathError: {
-        const Dual* p = &loads.grasps[i * loads.grasps.size() / loads.poses() + 3 * index];
-        const Dual d[] = {p[0] - figure.path[i].x(), p[1] - figure.path[i].y(),
-                          p[2] - figure.path[i].z()};
-        course.push_back(Size(d));
-        break;
-      }
-      default:
-        return {};
-    }
-  }
+  if (!IsCourse(figure)) return course;
+  for (size_t i = 0; i < loads.poses(); ++i) course.push_back(ValueAt(figure, file, loads, i));
   return course;
 }
 
@@ -82,13 +111,13 @@ Dual PowerMean(const std::vector<Dual>& course, double power) {
   return largest * pow(sum / static_cast<double>(course.size()), 1 / power);
 }
 
-Dual Reduce(const std::vector<Dual>& course, Reduction reduction) {
-  switch (reduction) {
+Dual Reduce(const std::vector<Dual>& course, const Figure& figure) {
+  switch (figure.reduction) {
     case Reduction::kPeak:
       return course[LargestAt(course)];
     case Reduction::kSmoothPeak:
-      return PowerMean(course, kSmoothPower) *
-             std::pow(static_cast<double>(course.size()), 1 / kSmoothPower);
+      return PowerMean(course, figure.power) *
+             std::pow(static_cast<double>(course.size()), 1 / figure.power);
     case Reduction::kRms:
       return PowerMean(course, 2);
   }
@@ -189,6 +218,23 @@ void AddDriveFigures(const StudyFile& file, std::vector<Figure>* figures) {
   }
 }
 
+void AddMotionFigures(const StudyFile& file, const StudyOutcome& outcome,
+                      std::vector<Figure>* figures) {
+  for (size_t i = 0; i < file.paths.size(); ++i) {
+    const Grasp& grasp = file.study.mechanism.grasps[file.paths[i].grasp];
+    figures->push_back({FigureKind::kPathError, static_cast<int>(i), Reduction::kPeak,
+                        NameWith(grasp.name, "path"), "m"});
+  }
+  const auto transmission = FindTransmissionAngle(file.study, outcome.loads);
+  if (!transmission) return;
+  for (const double angle : transmission->angles) {
+    if (!std::isfinite(angle)) return;
+  }
+  Figure figure{FigureKind::kTransmission, -1, Reduction::kPeak, "transmission", "deg"};
+  figure.loop = transmission->joints;
+  figures->push_back(std::move(figure));
+}
+
 void AddLifeFigures(const StudyFile& file, const StudyOutcome& outcome,
                     std::vector<Figure>* figures) {
   for (size_t i = 0; i < outcome.bearings.size(); ++i) {
@@ -217,6 +263,7 @@ std::vector<Figure> FiguresOf(const StudyFile& file, const StudyOutcome& outcome
   AddJointFigures(file, outcome, &figures);
   AddDriveFigures(file, &figures);
   figures.push_back({FigureKind::kGroundForce, -1, Reduction::kPeak, "ground.force", "N"});
+  AddMotionFigures(file, outcome, &figures);
   AddLifeFigures(file, outcome, &figures);
   figures.push_back({FigureKind::kMass, -1, Reduction::kPeak, "mass", "kg"});
   return figures;
@@ -228,8 +275,7 @@ Figure FindFigure(const std::vector<Figure>& known, const std::string& name) {
   const std::string stem = rms ? name.substr(0, name.size() - kRmsEnding.size()) : name;
   std::vector<std::string> names;
   for (const Figure& figure : known) {
-    const bool course = figure.kind != FigureKind::kLife && figure.kind != FigureKind::kMass;
-    if (figure.name == stem && (course || !rms)) {
+    if (figure.name == stem && (IsCourse(figure) || !rms)) {
       Figure found = figure;
       if (rms) found.reduction = Reduction::kRms;
       found.name = name;
@@ -262,20 +308,38 @@ std::string NotDeterminedIn(const Figure& figure, const StudyFile& file,
     case FigureKind::kGroundForce:
     case FigureKind::kMass:
     case FigureKind::kPathError:
+    case FigureKind::kTransmission:
       break;
   }
   return fmt::format("{}", fmt::join(open, ", "));
+}
+
+std::vector<size_t> PosesThatMatter(const Figure& figure, const StudyFile& file,
+                                    const LoadDerivatives& all) {
+  // Of the largest: what is lost in the sum of the powers.
+  const double lost = std::pow(1e-19, 1 / figure.power);
+  const std::vector<Dual> course = CourseOf(figure, file, all);
+  std::vector<size_t> poses;
+  if (figure.kind == FigureKind::kMass) return poses;
+  const size_t peak = course.empty() ? 0 : LargestAt(course);
+  for (size_t i = 0; i < all.poses(); ++i) {
+    const bool whole = course.empty() || figure.reduction == Reduction::kRms;
+    const bool near_peak =
+        figure.reduction == Reduction::kSmoothPeak && course[i].value > lost * course[peak].value;
+    if (whole || near_peak || i == peak) poses.push_back(i);
+  }
+  return poses;
 }
 
 Dual ValueOf(const Figure& figure, const StudyFile& file, const StudyOutcome& outcome,
              const StudyChange& change, const LoadDerivatives& loads) {
   if (figure.kind == FigureKind::kMass) return MassOf(file, change);
   if (figure.kind == FigureKind::kLife) return LifeOf(figure, file, outcome, change, loads);
-  return Reduce(CourseOf(figure, file.study.mechanism, loads), figure.reduction);
+  return Reduce(CourseOf(figure, file, loads), figure);
 }
 
 int PeakPose(const Figure& figure, const StudyFile& file, const LoadDerivatives& loads) {
-  const std::vector<Dual> course = CourseOf(figure, file.study.mechanism, loads);
+  const std::vector<Dual> course = CourseOf(figure, file, loads);
   if (course.empty() || figure.reduction != Reduction::kPeak) return -1;
   return static_cast<int>(LargestAt(course));
 }

@@ -56,7 +56,7 @@ void ReadFollowingDrive(const Node& node, const Units& units, const std::filesys
 
 /// A table of the hand's poses.
 struct HandTable {
-  HandLaw law;
+  HandLaw law;                ///< poses over time
   std::vector<double> times;  ///< [s]
   bool closed = false;        ///< it ends where it began
 };

@@ -3,16 +3,27 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include "vmech/dynamics/loads/track_motion.h"
+#include "vmech/dynamics/sensitivity/motion_part.h"
 
 namespace vmech {
 namespace {
 
 constexpr double kStep = 1e-3;  // of a parameter's scale, for the slopes of the file's numbers
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// Poses at which loops are seen to stay closed, whatever else matters.
+std::set<size_t> SpreadPoses(size_t poses) {
+  constexpr size_t kSpread = 8;
+  std::set<size_t> spread;
+  for (size_t k = 0; k < kSpread; ++k) spread.insert(k * poses / kSpread);
+  return spread;
+}
 
 /// The study with one parameter after the other.
 class Differentiator {
@@ -31,10 +42,16 @@ class Differentiator {
     const StudyChange still = ChangeOfStudy(
         prepared_, motion_, [this](double) { return file_.study; }, 0, 1);
     const LoadDerivatives loads = DifferentiateLoads(prepared_, motion_, still);
+    std::set<size_t> poses = SpreadPoses(motion_.size());
     for (FigureSlopes& f : result_.figures) {
       f.value = ValueOf(f.figure, file_, outcome_, still, loads).value;
       f.pose = PeakPose(f.figure, file_, loads);
+      if (f.slopes.empty()) continue;
+      for (const size_t pose : PosesThatMatter(f.figure, file_, loads)) poses.insert(pose);
     }
+    if (poses.size() == motion_.size()) return;
+    poses_.assign(poses.begin(), poses.end());
+    motion_ = PartOf(motion_, poses_);
   }
 
   void Differentiate(size_t p) {
@@ -43,10 +60,12 @@ class Differentiator {
       const auto at = [&](double value) {
         StudyFile changed = file_;
         parameter.put(value, &changed);
+        TakePart(&changed.study);
         return std::move(changed.study);
       };
-      const StudyChange change =
+      StudyChange change =
           ChangeOfStudy(prepared_, motion_, at, parameter.value, kStep * parameter.scale);
+      change.pose_numbers = poses_;
       const LoadDerivatives loads = DifferentiateLoads(prepared_, motion_, change);
       for (FigureSlopes& f : result_.figures) {
         if (f.slopes.empty()) continue;
@@ -58,11 +77,20 @@ class Differentiator {
   }
 
  private:
+  /// Leaves a study the poses of `motion_`. One that has others altogether is left alone.
+  void TakePart(LoadStudy* study) const {
+    if (poses_.empty() || study->times.size() != file_.study.times.size()) return;
+    std::vector<double> times;
+    for (const size_t pose : poses_) times.push_back(study->times[pose]);
+    study->times = std::move(times);
+  }
+
   const StudyFile& file_;
   const StudyOutcome& outcome_;
   Sensitivities& result_;
   const PreparedStudy prepared_;
-  const Motion motion_;
+  Motion motion_;              // at the poses that matter,
+  std::vector<size_t> poses_;  // which are these; all if there are none
 };
 
 }  // namespace

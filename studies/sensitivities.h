@@ -16,7 +16,7 @@ struct SensitivityOptions {
 
 /// A figure of the study with its derivatives.
 struct FigureSlopes {
-  Figure figure;
+  Figure figure;               ///< which one
   double value = 0;            ///< in figure.unit
   int pose = -1;               ///< at which a peak is reached
   std::string not_determined;  ///< components that statics leaves open; then there are no slopes
@@ -29,9 +29,9 @@ struct FigureSlopes {
 
 /// Derivatives of figures of a study by parameters.
 struct Sensitivities {
-  std::vector<StudyParameter> parameters;
+  std::vector<StudyParameter> parameters;  ///< in the order of their declaration
   std::vector<std::string> refusals;  ///< [parameters] why there is no derivative; mostly empty
-  std::vector<FigureSlopes> figures;
+  std::vector<FigureSlopes> figures;  ///< in the order of the summary
 };
 
 /// Exact derivatives of what a study comes to by the parameters.

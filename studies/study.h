@@ -18,36 +18,43 @@ namespace vmech {
 
 /// The bearings that a study asks for at one joint.
 struct BearingRequest {
-  int joint = -1;
-  Arrangement arrangement;
-  BearingRequirements requirements;
+  int joint = -1;                    ///< index in Mechanism::joints
+  Arrangement arrangement;           ///< one bearing or two, and where
+  BearingRequirements requirements;  ///< life, reliability, lubrication
+};
+
+/// Where the origin of a grasp is wanted as the mechanism moves.
+struct WantedPath {
+  int grasp = -1;                     ///< index in Mechanism::grasps
+  std::vector<Vector3d> points = {};  ///< [poses] in the world [m]
 };
 
 /// What a study simulates instead of following a motion. The mechanism, drives, external loads,
 /// times and the rule are those of StudyFile::study.
 struct SimulationRequest {
-  Simulation simulation;
-  SimulationOptions options;
+  Simulation simulation;      ///< with its motors, limits and times
+  SimulationOptions options;  ///< how exactly
 };
 
 /// A file that a study was read from.
 struct InputFile {
-  std::filesystem::path path;
-  std::string sha256;  ///< of its bytes, as Sha256
+  std::filesystem::path path;  ///< absolute
+  std::string sha256;          ///< of its bytes, as Sha256
 };
 
 /// A study file as read: what to compute, and what is asked of the result.
 struct StudyFile {
-  std::filesystem::path path;
-  std::string name;         ///< of the study; the file's stem if it gives none
-  std::string description;  ///< free text, may be empty
-  std::filesystem::path mechanism_path;
-  std::string motion;  ///< the motion in words: "main at 1500 rpm, 2 turns"
-  LoadStudy study;
+  std::filesystem::path path;            ///< absolute
+  std::string name;                      ///< of the study; the file's stem if it gives none
+  std::string description;               ///< free text, may be empty
+  std::filesystem::path mechanism_path;  ///< of the file that it names; empty if it is within
+  std::string motion;                    ///< the motion in words: "main at 1500 rpm, 2 turns"
+  LoadStudy study;                       ///< in SI units
   std::optional<SimulationRequest> simulation;  ///< instead of a motion
   /// A motion that was computed before, instead of its own. What acts is what the study says.
   std::optional<JointHistory> history;
-  std::vector<BearingRequest> bearings;
+  std::vector<BearingRequest> bearings;          ///< as in the file
+  std::vector<WantedPath> paths = {};            ///< as in the file
   std::vector<Bearing> catalogue;                ///< the built-in one unless the file names another
   std::vector<StatedParameter> parameters = {};  ///< of the mechanism and the study
   std::vector<ParameterSetting> settings = {};   ///< that it was read with
@@ -61,13 +68,13 @@ int TurnAboutAxis(JointType type);
 
 /// What came out for the bearings of one joint.
 struct BearingOutcome {
-  int joint = -1;
-  JointBearings bearings;
+  int joint = -1;          ///< index in Mechanism::joints
+  JointBearings bearings;  ///< chosen, with reasons
 };
 
 /// What a study came to: its loads, its simulation and its bearings.
 struct StudyOutcome {
-  LoadStudyResult loads;
+  LoadStudyResult loads;                       ///< at every pose
   std::optional<SimulationResult> simulation;  ///< of a study that has one; without its loads
   std::vector<BearingOutcome> bearings;        ///< in the order of StudyFile::bearings
   std::vector<std::string> warnings;           ///< of loads and bearings together

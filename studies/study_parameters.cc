@@ -21,7 +21,8 @@ using Number = std::function<double&(Mechanism*)>;
 
 class Dimensions {
  public:
-  Dimensions(const StudyFile& file, bool zeros) : mechanism_(file.study.mechanism), zeros_(zeros) {}
+  Dimensions(const StudyFile& file, bool zeros)
+      : mechanism_(file.study.mechanism), paths_(file.paths), zeros_(zeros) {}
 
   std::vector<StudyParameter> Run() {
     for (size_t l = 0; l < mechanism_.links.size(); ++l) {
@@ -33,10 +34,19 @@ class Dimensions {
         if (added.insert({id.link, id.anchor}).second) AddAnchor(id);
       }
     }
+    for (const WantedPath& path : paths_) AddGrasp(path.grasp);
     return std::move(parameters_);
   }
 
  private:
+  void AddGrasp(int grasp) {
+    const Grasp& held = mechanism_.grasps[grasp];
+    for (int k = 0; k < 3; ++k) {
+      AddLength(fmt::format("{}.{}", held.name, kAxes[k]), held.X_LG.p[k],
+                [grasp, k](Mechanism* m) -> double& { return m->grasps[grasp].X_LG.p[k]; });
+    }
+  }
+
   void AddBody(size_t l) {
     const Link& link = mechanism_.links[l];
     const MassProperties& body = link.mass_properties;
@@ -78,6 +88,7 @@ class Dimensions {
   }
 
   const Mechanism& mechanism_;
+  const std::vector<WantedPath>& paths_;
   bool zeros_;
   std::vector<StudyParameter> parameters_;
 };

@@ -28,8 +28,8 @@ void PutAll(const std::vector<StudyParameter>& parameters, std::span<const doubl
 std::vector<StudyParameter> FileParametersOf(const StudyFile& file);
 
 /// The numbers of the mechanism itself, in the units of its file: mass and centre of gravity of
-/// every link that has mass, and where its joints are made. Coordinates that are zero are left out
-/// unless `zeros`.
+/// every link that has mass, where its joints are made, and where a grasp is whose path the study
+/// wants. Coordinates that are zero are left out unless `zeros`.
 std::vector<StudyParameter> DimensionsOf(const StudyFile& file, bool zeros);
 
 /// The parameter of this name.

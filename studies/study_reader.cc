@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -17,7 +16,9 @@
 #include "vmech/mechanisms/files/mechanism_source.h"
 #include "vmech/mechanisms/files/parameters.h"
 #include "vmech/mechanisms/freedoms.h"
+#include "vmech/studies/read_bearings.h"
 #include "vmech/studies/read_motion.h"
+#include "vmech/studies/read_paths.h"
 #include "vmech/studies/read_simulation.h"
 #include "vmech/studies/sha256.h"
 
@@ -143,72 +144,6 @@ ExternalLoad ReadExternalLoad(const Node& node, const Units& units,
   return load;
 }
 
-Arrangement ReadArrangement(const Node& node, const Units& units) {
-  Arrangement arrangement;
-  if (const Node positions = node["positions"]) {
-    arrangement.positions.clear();
-    for (const Node& entry : positions.List()) {
-      arrangement.positions.push_back(entry.Number(units.length));
-    }
-    if (arrangement.positions.empty()) positions.Error("a joint has one or two bearings");
-  }
-  arrangement.locating = node["locating"].Integer(0, 0, 1);
-  return arrangement;
-}
-
-BearingRequirements ReadRequirements(const Node& node, const Units& units) {
-  BearingRequirements asked;
-  if (const std::vector<double> shaft =
-          node["shaft"].Numbers(std::array{units.length, units.length});
-      !shaft.empty()) {
-    asked.shaft_min = shaft[0];
-    asked.shaft_max = shaft[1];
-  }
-  if (const Node housing = node["housing"]) asked.housing_max = housing.Positive(units.length);
-  asked.life_hours = node["life_hours"].NonNegative(asked.life_hours);
-  if (const Node pair = node["pair_life_hours"]) asked.pair_life_hours = pair.NonNegative();
-  asked.reliability = node["reliability"].Positive(asked.reliability);
-  asked.static_safety = node["static_safety"].Positive(asked.static_safety);
-  asked.lubrication = node["lubrication"].Word<Lubrication>(
-      {{"grease", Lubrication::kGrease}, {"oil", Lubrication::kOil}}, asked.lubrication);
-  return asked;
-}
-
-/// An entry of `bearings`, whose key names a joint that turns about its z axis.
-BearingRequest ReadBearings(const Node& node, const Units& units, const Mechanism& mechanism) {
-  BearingRequest request;
-  std::vector<std::string> names;
-  for (const Joint& joint : mechanism.joints) names.push_back(joint.name);
-  request.joint = FindJoint(mechanism, node.key());
-  if (request.joint < 0) {
-    node.KeyError("joint " + Quoted(node.key()) + " not found" + DidYouMean(node.key(), names));
-    return request;
-  }
-  const JointType type = mechanism.joints[request.joint].type;
-  if (type != JointType::kRevolute && type != JointType::kCylindrical &&
-      type != JointType::kScrew) {
-    node.KeyError(fmt::format("a {} joint has no axis for rolling bearings", NameOf(type)));
-    return request;
-  }
-  if (!node.CheckKeys({}, {"description", "positions", "locating", "shaft", "housing", "life_hours",
-                           "pair_life_hours", "reliability", "static_safety", "lubrication"})) {
-    return request;
-  }
-  node["description"].Text();
-  request.arrangement = ReadArrangement(node, units);
-  request.requirements = ReadRequirements(node, units);
-  if (request.arrangement.positions.size() < 2 && node["pair_life_hours"]) {
-    node["pair_life_hours"].KeyError("there is one bearing; give two positions, or leave this out");
-  }
-  try {
-    request.arrangement.Validate();
-    request.requirements.Validate();
-  } catch (const std::invalid_argument& defect) {
-    node.KeyError(defect.what());
-  }
-  return request;
-}
-
 ReactionRule ReadRule(const Node& node) {
   return node.Word<ReactionRule>({{NameOf(ReactionRule::kStiffness), ReactionRule::kStiffness},
                                   {NameOf(ReactionRule::kMinimumNorm), ReactionRule::kMinimumNorm},
@@ -217,8 +152,8 @@ ReactionRule ReadRule(const Node& node) {
 }
 
 /// What refers to the parts of the mechanism.
-void ReadReferences(const Node& root, const std::filesystem::path& folder, StudyFile* file) {
-  const Units units = ReadUnits(root["units"]);
+void ReadReferences(const Node& root, const Units& units, const std::filesystem::path& folder,
+                    StudyFile* file) {
   LoadStudy& loads = file->study;
   if (root["simulation"]) {
     ReadSimulation(root["simulation"], units, folder, file);
@@ -231,6 +166,11 @@ void ReadReferences(const Node& root, const std::filesystem::path& folder, Study
   if (const Node length = root["norm_length"]) loads.norm_length = length.Positive(units.length);
   for (const Node& entry : root["bearings"].Map()) {
     file->bearings.push_back(ReadBearings(entry, units, loads.mechanism));
+  }
+  if (root["paths"] && root["simulation"]) {
+    root["paths"].KeyError("used with a motion only, which has its poses");
+  } else {
+    file->paths = ReadPaths(root["paths"], units, folder, loads);
   }
 }
 
@@ -283,9 +223,10 @@ class StudyReader {
   }
 
   StudyFile Read(std::span<const ParameterSetting> settings) {
-    if (root_.CheckKeys({"vmech_study", "mechanism"},
-                        {"motion", "simulation", "name", "description", "units", "parameters",
-                         "external", "rule", "norm_length", "bearings", "catalogue", "limits"})) {
+    if (root_.CheckKeys(
+            {"vmech_study", "mechanism"},
+            {"motion", "simulation", "name", "description", "units", "parameters", "external",
+             "rule", "norm_length", "bearings", "catalogue", "limits", "paths"})) {
       ReadOwn();
       if (OpenMechanism()) ReadRest(settings);
     }
@@ -305,7 +246,8 @@ class StudyReader {
     file_.name = root_["name"].Text(file_.path.stem().string());
     file_.description = root_["description"].Text();
     file_.study.rule = ReadRule(root_["rule"]);
-    file_.study.units = DisplayUnitsOf(root_["units"], ReadUnits(root_["units"]));
+    units_ = ReadUnits(root_["units"]);
+    file_.study.units = DisplayUnitsOf(root_["units"], units_);
     file_.study.stop_at_limits =
         root_["limits"].Word<bool>({{"warn", false}, {"stop", true}}, false);
     file_.catalogue = ReadNamedCatalogue(root_["catalogue"], folder());
@@ -329,7 +271,7 @@ class StudyReader {
     file_.settings.assign(settings.begin(), settings.end());
     ParameterTable& table = source_->parameters();
     const std::vector<std::string> of_mechanism = table.names();
-    const CountingUnits units = ReadUnits(root_["units"]).counting();
+    const CountingUnits units = units_.counting();
     ReadParameters(root_["parameters"], units, &table);
     ApplySettings(settings, file_.path.string(), units, &table);
     const StudyFile begun = file_;
@@ -344,7 +286,7 @@ class StudyReader {
         document_.NoteNamedFile({file.path, Sha256(file.text)});
       }
       document_.SetScope({units, table.names(), source_->values(), {}});
-      ReadReferences(root_, folder(), &file_);
+      ReadReferences(root_, units_, folder(), &file_);
       for (const ParameterUse& use : document_.uses()) {
         if (use.alone) table.NoteUse(use.parameter, use.asked);
       }
@@ -382,6 +324,7 @@ class StudyReader {
   std::string_view text_;
   Document document_;
   Node root_;
+  Units units_;
   StudyFile file_;
   std::optional<MechanismSource> source_;
 };

@@ -38,8 +38,8 @@ void AddSensitivities(CLI::App* app, SensitivityArguments* arguments) {
       ->type_name("NAMES");
   command
       ->add_option("--of", arguments->of,
-                   "figures, as pin.force, main.drive.rms, wrist.life, ground.force or mass "
-                   "(default: all peaks and lives, and the mass)")
+                   "figures, as pin.force, main.drive.rms, wrist.life, ground.force, handle.path, "
+                   "transmission or mass (default: all peaks and lives, and the mass)")
       ->delimiter(',')
       ->type_name("NAMES");
   command->add_flag("--undetermined", arguments->undetermined,
@@ -73,8 +73,8 @@ void AddOptimise(CLI::App* app, OptimiseArguments* arguments) {
                    "what a figure must keep, as 'pin.life>=10000' or 'mass<=1.2'; may be given "
                    "several times")
       ->type_name("FIGURE<=LIMIT");
-  command->add_option("--method", arguments->method, "of NLopt")
-      ->check(CLI::IsMember({"slsqp", "mma"}))
+  command->add_option("--method", arguments->method, "slsqp and mma of NLopt, or ipopt")
+      ->check(CLI::IsMember({"slsqp", "mma", "ipopt"}))
       ->capture_default_str();
   command
       ->add_option("--starts", arguments->starts,
@@ -87,6 +87,8 @@ void AddOptimise(CLI::App* app, OptimiseArguments* arguments) {
   AddSet(command, &arguments->set);
   command->add_option("--out", arguments->out, "folder for the design (default: none)")
       ->type_name("DIR");
+  command->add_flag("--resume", arguments->resume,
+                    "go on with the search in the folder of --out that was interrupted");
   command->add_option("--threads", arguments->threads, "0 for one per processor")
       ->check(CLI::Range(0, 64, "0..64"))
       ->capture_default_str();

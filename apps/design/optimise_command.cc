@@ -1,14 +1,18 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <optional>
+#include <string>
 
 #include "vmech/apps/commands.h"
 #include "vmech/apps/console/option_error.h"
 #include "vmech/apps/design/asked.h"
 #include "vmech/apps/design/design_texts.h"
+#include "vmech/apps/design/search_state.h"
 #include "vmech/apps/files/result_folder.h"
 #include "vmech/apps/loads/named_study.h"
 #include "vmech/apps/report/report_date.h"
+#include "vmech/mechanisms/files/document.h"
 #include "vmech/mechanisms/files/writer.h"
 
 namespace vmech {
@@ -48,16 +52,61 @@ void RequireDetermined(const DesignTask& task, const StudyFile& file, const Stud
   }
 }
 
+ProgramMethod MethodOf(const std::string& name) {
+  if (name == "ipopt") return ProgramMethod::kIpopt;
+  return name == "mma" ? ProgramMethod::kMma : ProgramMethod::kSlsqp;
+}
+
+/// All that the course of a search depends on.
+std::string QuestionOf(const OptimiseArguments& arguments, const StudyFile& file) {
+  std::string question = fmt::format(
+      "vmech {} minimise {} maximise {} vary {} keep {} method {} starts {} undetermined {} set {}",
+      VMECH_VERSION, arguments.minimise, arguments.maximise, fmt::join(arguments.vary, " "),
+      fmt::join(arguments.keep, " "), arguments.method, arguments.starts, arguments.undetermined,
+      fmt::join(arguments.set, " "));
+  for (const InputFile& input : file.inputs) question += " " + input.sha256;
+  return question;
+}
+
+/// The search in the folder, as far as it had come.
+SearchState OpenSearch(const OptimiseArguments& arguments, const StudyFile& file) {
+  SearchState search(arguments.out, QuestionOf(arguments, file));
+  const size_t known = search.designs().size();
+  if (known > 0 && !arguments.resume) {
+    throw FileErrors((arguments.out / SearchState::kFileName).string(),
+                     fmt::format("a search was interrupted here after {} designs; --resume goes on "
+                                 "with it, or remove this file",
+                                 known));
+  }
+  if (arguments.resume && !arguments.quiet) {
+    fmt::print("{}\n", known > 0 ? fmt::format("The search goes on after {} designs.", known)
+                                 : "There is no search to go on with; it begins.");
+  }
+  return search;
+}
+
 }  // namespace
 
 int RunOptimise(const OptimiseArguments& arguments) {
+  if (arguments.resume && arguments.out.empty()) {
+    throw OptionError("optimise: --resume needs --out DIR, the folder of the search");
+  }
   const StudyFile file = StudyAsked("optimise", arguments.study, arguments.set);
   std::optional<ResultFolder> folder;
-  if (!arguments.out.empty()) folder.emplace(arguments.out, ResultKind::kDesign);
+  std::optional<SearchState> search;
   DesignOptions options;
+  if (!arguments.out.empty()) {
+    search.emplace(OpenSearch(arguments, file));
+    folder.emplace(arguments.out, ResultKind::kDesign);
+    options.known = search->designs();
+    options.progress = [&](const EvaluatedDesign& design) {
+      search->Add(design);
+      return true;
+    };
+  }
   options.threads = ThreadsAsked(arguments.threads);
   options.starts = arguments.starts;
-  options.program.method = arguments.method == "mma" ? ProgramMethod::kMma : ProgramMethod::kSlsqp;
+  options.program.method = MethodOf(arguments.method);
   LoadStudyOptions how;
   how.threads = options.threads;
   const StudyOutcome outcome = RunNamedStudy(file, how);
@@ -70,6 +119,7 @@ int RunOptimise(const OptimiseArguments& arguments) {
     folder->Write("report.html",
                   RenderDesignReport(file, task, result, VMECH_VERSION, ReportDate()));
     folder->Commit();
+    search->Remove();
   }
   if (!arguments.quiet) fmt::print("{}", PrintedDesign(file, task, result));
   return result.feasible ? kSuccess : kNotMet;

@@ -27,8 +27,8 @@ class BlockNullSpace {
   BlockNullSpace(int columns, const std::vector<RowBlock>& blocks, double tolerance,
                  const std::vector<bool>& held = {});
 
-  int rank() const { return rank_; }
-  int dimension() const { return dimension_; }
+  int rank() const { return rank_; }            ///< of all blocks together
+  int dimension() const { return dimension_; }  ///< columns - rank()
   /// Vectors of the null space [columns, n] from their coordinates in Basis() [dimension, n].
   Eigen::MatrixXd FromCoordinates(const Eigen::MatrixXd& coordinates) const;
   /// Orthonormal [columns, dimension].

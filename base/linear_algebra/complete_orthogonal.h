@@ -17,6 +17,7 @@ namespace vmech {
 /// Memory is taken only where a matrix is larger than all before.
 class CompleteOrthogonal {
  public:
+  /// A view of a factor, valid until the next Factor.
   using ConstMap = Eigen::Map<const Eigen::MatrixXd>;
 
   CompleteOrthogonal() = default;
@@ -25,25 +26,26 @@ class CompleteOrthogonal {
 
   /// Memory for C' [columns, rows], to be filled before Factor(), which overwrites it.
   Eigen::Map<Eigen::MatrixXd> Prepare(int rows, int columns);
-  void Factor(double rank_tolerance);
+  void Factor(double rank_tolerance);  ///< pivots below it times the largest count as zero
   /// Changes the rank of the C factored last; rank_tolerance >= that of Factor().
   void SetRank(double rank_tolerance);
   /// Makes the solves that follow minimise with damping, >= 0; Factor() and SetRank() end it.
   void SetDamping(double damping) noexcept;
 
-  int rank() const { return rank_; }
-  ConstMap V() const { return {V_.data(), m_, rank_}; }
-  ConstMap L() const { return {L_.data(), rank_, rank_}; }
-  ConstMap Y() const { return {Q_.data(), n_, rank_}; }
+  int rank() const { return rank_; }                        ///< of the C factored last
+  ConstMap V() const { return {V_.data(), m_, rank_}; }     ///< [m, rank], orthonormal columns
+  ConstMap L() const { return {L_.data(), rank_, rank_}; }  ///< [rank, rank], lower triangular
+  ConstMap Y() const { return {Q_.data(), n_, rank_}; }  ///< [n, rank], orthonormal: what C' spans
+  /// [n, n - rank], orthonormal: C Z = 0
   ConstMap Z() const { return {Q_.data() + n_ * rank_, n_, n_ - rank_}; }
 
   /// The shortest of the x [n] that minimise |C x - b|^2 + damping |x|^2, b [m].
   void Solve(const double* b, double* x) noexcept;
-  Eigen::VectorXd Solve(const Eigen::VectorXd& b);
+  Eigen::VectorXd Solve(const Eigen::VectorXd& b);  ///< the same, with memory for x
 
   /// The shortest of the mu [m] that minimise |C' mu - g|^2 + damping |mu|^2, g [n].
   void SolveTransposed(const double* g, double* mu) noexcept;
-  Eigen::VectorXd SolveTransposed(const Eigen::VectorXd& g);
+  Eigen::VectorXd SolveTransposed(const Eigen::VectorXd& g);  ///< the same, with memory for mu
 
  private:
   void FactorRows(double rank_tolerance);

@@ -24,8 +24,8 @@ class EnvelopeLdlt {
   /// first[i] <= i is the first column of row i that may differ from zero.
   explicit EnvelopeLdlt(std::vector<int> first);
 
-  int size() const { return static_cast<int>(first_.size()); }
-  void SetZero();
+  int size() const { return static_cast<int>(first_.size()); }  ///< rows
+  void SetZero();                                               ///< every entry that is stored
   /// Entry (i, j), first[i] <= j <= i, to be filled before Factor.
   T& operator()(int i, int j) { return values_[row_[i] + j]; }
   /// Rows and columns are exchanged as needed to reach the lower triangle.

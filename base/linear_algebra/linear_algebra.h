@@ -28,7 +28,7 @@ VectorXd MinimumNormSolution(const MatrixXd& A, const VectorXd& b, double tolera
 
 /// Rank and null space of a matrix by Householder QR of its transpose with column pivoting.
 struct NullSpace {
-  int rank = 0;
+  int rank = 0;    ///< pivots that do not count as zero
   MatrixXd basis;  ///< [columns, columns - rank], orthonormal
 };
 
@@ -39,7 +39,7 @@ NullSpace FindNullSpace(const MatrixXd& A, double tolerance);
 /// A matrix A of the order of 1, and what is left of it when pivots that are small in the sense of
 /// FindNullSpace count as zero.
 struct RankSplit {
-  int rank = 0;
+  int rank = 0;              ///< pivots that do not count as zero
   MatrixXd null_space;       ///< [columns, columns - rank], orthonormal: A N = 0
   MatrixXd left_null_space;  ///< [rows, rows - rank], orthonormal: U'A = 0
   MatrixXd pseudo_inverse;   ///< [columns, rows]
@@ -53,8 +53,8 @@ std::vector<int> MostIndependentRows(const MatrixXd& A, int count);
 
 /// Singular values, largest first, and all left singular vectors [rows, rows].
 struct LeftSingularVectors {
-  VectorXd values;
-  MatrixXd vectors;
+  VectorXd values;   ///< [min(rows, columns)], >= 0
+  MatrixXd vectors;  ///< [rows, rows], a column each
 };
 /// The singular values and left singular vectors of A.
 LeftSingularVectors FindLeftSingularVectors(const MatrixXd& A);

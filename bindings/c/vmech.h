@@ -59,8 +59,8 @@ typedef struct vmech_tick vmech_tick;
 
 /* A frame in another: its origin [m], and its axes as the columns of a rotation, row after row. */
 typedef struct vmech_pose {
-  double position[3];
-  double rotation[9];
+  double position[3]; /* of its origin [m] */
+  double rotation[9]; /* R, [3, 3] */
 } vmech_pose;
 
 /* The version of the library, "0.2.0". Its soname changes where a program has to be compiled
@@ -85,11 +85,11 @@ VMECH_API const char* vmech_mechanism_message(const vmech_mechanism* mechanism);
 /* Building. Each returns the index of what it added; -1, and the handle fails, if that is not
  * possible. Springs, friction, limits and stiffnesses are for the file format, as text. */
 typedef struct vmech_link {
-  size_t struct_size;
-  const char* name;
-  double mass;       /* [kg] */
-  double center[3];  /* of gravity [m] */
-  double inertia[6]; /* xx yy zz xy xz yz, elements of the matrix about it [kg m^2] */
+  size_t struct_size; /* sizeof(vmech_link) */
+  const char* name;   /* unique in the mechanism */
+  double mass;        /* [kg] */
+  double center[3];   /* of gravity [m] */
+  double inertia[6];  /* xx yy zz xy xz yz, elements of the matrix about it [kg m^2] */
 } vmech_link;
 /* Adds a link; the first is the ground. */
 VMECH_API int32_t vmech_add_link(vmech_mechanism* mechanism, const vmech_link* link);
@@ -97,9 +97,9 @@ VMECH_API int32_t vmech_add_link(vmech_mechanism* mechanism, const vmech_link* l
 /* A frame on a link, in the link's drawing frame. `z` and `x` need not be of length 1; x is made
  * square to z. All zero: the drawing axes. */
 typedef struct vmech_anchor {
-  int32_t link;
-  double origin[3];
-  double z[3], x[3];
+  int32_t link;      /* index of the link */
+  double origin[3];  /* in the drawing frame [m] */
+  double z[3], x[3]; /* directions in it */
 } vmech_anchor;
 
 /* Which freedoms a joint has, in their order. */
@@ -116,9 +116,9 @@ enum {
 };
 /* A joint between anchors of two links. */
 typedef struct vmech_joint {
-  size_t struct_size;
-  const char* name;
-  vmech_joint_type type;
+  size_t struct_size;         /* sizeof(vmech_joint) */
+  const char* name;           /* unique in the mechanism */
+  vmech_joint_type type;      /* decides its freedoms */
   vmech_anchor first, second; /* they coincide where the joint's coordinates are zero */
   double pitch;               /* VMECH_SCREW [m/rad] */
   /* Where the assembly starts, a value per freedom; NULL: anywhere. Of a spherical joint four, a
@@ -163,12 +163,12 @@ VMECH_API vmech_mechanism* vmech_study_mechanism(const vmech_study* study);
 /* A motor: one freedom of a joint moves as prescribed, whatever force that takes. With a table, by
  * the cubic spline through it; without, start + speed t + acceleration t^2 / 2. */
 typedef struct vmech_drive {
-  size_t struct_size;
-  int32_t joint, freedom;
-  double start, speed, acceleration;
-  size_t rows;
-  const double* times;  /* [rows] increasing [s] */
-  const double* values; /* [rows] */
+  size_t struct_size;                /* sizeof(vmech_drive) */
+  int32_t joint, freedom;            /* indices; freedoms count from 0 */
+  double start, speed, acceleration; /* [m] or [rad], and per s, s^2 */
+  size_t rows;                       /* of the table; 0: there is none */
+  const double* times;               /* [rows] increasing [s] */
+  const double* values;              /* [rows] */
 } vmech_drive;
 /* Adds a motor. */
 VMECH_API vmech_status vmech_study_add_drive(vmech_study* study, const vmech_drive* drive);
@@ -185,12 +185,12 @@ VMECH_API vmech_status vmech_study_add_load(vmech_study* study, int32_t link, co
 
 /* How a study is run. */
 typedef struct vmech_run_options {
-  size_t struct_size;
-  int32_t threads; /* 1 to 64; 0 is 1. The result does not depend on it */
+  size_t struct_size; /* sizeof(vmech_run_options) */
+  int32_t threads;    /* 1 to 64; 0 is 1. The result does not depend on it */
   /* Called now and then, from the calling thread or one of these, with the number of poses done;
    * 0 stops. NULL: nobody asks. */
   int32_t (*progress)(void* user, size_t poses);
-  void* user;
+  void* user; /* is handed to `progress` */
 } vmech_run_options;
 /* Runs the loads, or the simulation, and chooses bearings. `options` may be NULL. A simulation that
  * stops early has VMECH_NO_SOLUTION or VMECH_INTERRUPTED, and what it had computed. */
@@ -198,8 +198,8 @@ VMECH_API vmech_result* vmech_study_run(const vmech_study* study, const vmech_ru
 
 /* The hand, and who looks for the nearest pose. */
 typedef struct vmech_ik_options {
-  size_t struct_size;
-  int32_t grasp;
+  size_t struct_size;    /* sizeof(vmech_ik_options) */
+  int32_t grasp;         /* its index */
   vmech_pose hand;       /* in the world; of a point grasp the position counts */
   double stiffness[6];   /* weighs positions [N/m] and rotations [N m/rad]; all 0: the default */
   int32_t ignore_limits; /* of joints */
@@ -212,13 +212,13 @@ VMECH_API vmech_result* vmech_ik(const vmech_mechanism* mechanism, const vmech_i
 
 /* What a search for assembly modes holds, and how long it searches. */
 typedef struct vmech_modes_options {
-  size_t struct_size;
-  const int32_t* held; /* freedoms that stay as they start */
-  size_t held_count;
-  int32_t with_hand; /* 0: no hand */
-  int32_t grasp;     /* that has to be exactly at the hand */
-  vmech_pose hand;
-  int32_t ignore_limits;
+  size_t struct_size;           /* sizeof(vmech_modes_options) */
+  const int32_t* held;          /* freedoms that stay as they start */
+  size_t held_count;            /* of them */
+  int32_t with_hand;            /* 0: no hand */
+  int32_t grasp;                /* that has to be exactly at the hand */
+  vmech_pose hand;              /* in the world */
+  int32_t ignore_limits;        /* 1: limits do not hold */
   int32_t max_starts, patience; /* of the search; 0: 20000 and 2000 */
   uint64_t seed;                /* 0: 1 */
 } vmech_modes_options;
@@ -262,10 +262,10 @@ enum {
  * *(const double*)((const char*)data + i strides[0] + j strides[1] + ..). All but
  * VMECH_LINK_... and VMECH_HAND_WRENCHES lie one behind the other, the last index fastest. */
 typedef struct vmech_array {
-  size_t struct_size;
-  const double* data; /* NULL where the result has no such array */
-  size_t rank;
-  size_t shape[4];
+  size_t struct_size;   /* sizeof(vmech_array) */
+  const double* data;   /* NULL where the result has no such array */
+  size_t rank;          /* 1 to 4 */
+  size_t shape[4];      /* the first `rank` of them */
   ptrdiff_t strides[4]; /* [bytes] */
 } vmech_array;
 /* An array of a result, where it lies. */
@@ -289,8 +289,8 @@ VMECH_API vmech_certainty vmech_result_certainty(const vmech_result* result, siz
 
 /* The bearings of a joint that the study asks for, one or two. */
 typedef struct vmech_bearings {
-  size_t struct_size;
-  int32_t joint;
+  size_t struct_size;         /* sizeof(vmech_bearings) */
+  int32_t joint;              /* its index */
   int32_t is_met;             /* every position has a bearing, and they live as long as asked */
   int32_t is_certain;         /* statics determines what loads them */
   int32_t count;              /* of positions */
@@ -307,8 +307,8 @@ VMECH_API vmech_status vmech_result_bearings(const vmech_result* result, size_t 
 
 /* What couples hand and mechanism, and how often. */
 typedef struct vmech_tick_options {
-  size_t struct_size;
-  int32_t grasp;
+  size_t struct_size;  /* sizeof(vmech_tick_options) */
+  int32_t grasp;       /* its index */
   double period;       /* between two ticks [s] */
   double stiffness[6]; /* of the spring at the hand [N/m], [N m/rad] */
   double damping[6];   /* beside it [N s/m], [N m s/rad] */

@@ -21,7 +21,7 @@ struct Arrangement {
 
 /// The force that a bearing transmits from the first link to the second, in the joint's axes [N].
 struct BearingForce {
-  Vector3d force = Vector3d::Zero();
+  Vector3d force = Vector3d::Zero();  ///< from the first link to the second
 
   double radial() const { return force.head<2>().norm(); }  ///< Fr [N]
   double axial() const { return std::abs(force.z()); }      ///< Fa [N]

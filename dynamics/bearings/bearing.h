@@ -18,14 +18,14 @@ std::string_view NameOf(BearingKind kind);
 
 /// A rolling bearing as a catalogue describes it.
 struct Bearing {
-  std::string designation;
-  BearingKind kind = BearingKind::kDeepGrooveBall;
-  double bore = 0;            ///< d [m]
-  double outer_diameter = 0;  ///< D [m]
-  double width = 0;           ///< B [m]
-  double dynamic_rating = 0;  ///< basic dynamic load rating C [N], ISO 281
-  double static_rating = 0;   ///< basic static load rating C0 [N], ISO 76
-  double f0 = 0;              ///< factor of the relative axial load f0 Fa / C0 [-]; ball bearings
+  std::string designation;                          ///< as the catalogue has it, such as 6205
+  BearingKind kind = BearingKind::kDeepGrooveBall;  ///< decides equivalent loads and life exponent
+  double bore = 0;                                  ///< d [m]
+  double outer_diameter = 0;                        ///< D [m]
+  double width = 0;                                 ///< B [m]
+  double dynamic_rating = 0;                        ///< basic dynamic load rating C [N], ISO 281
+  double static_rating = 0;                         ///< basic static load rating C0 [N], ISO 76
+  double f0 = 0;  ///< factor of the relative axial load f0 Fa / C0 [-]; ball bearings
   double speed_grease = std::numeric_limits<double>::infinity();  ///< limiting speed [rad/s]
   double speed_oil = std::numeric_limits<double>::infinity();     ///< limiting speed [rad/s]
   /// Greatest purely axial load as a multiple of C0 [-]; infinite where the maker states none.

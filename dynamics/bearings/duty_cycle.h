@@ -36,8 +36,8 @@ enum class Rotation {
 
 /// How the joint turns over the cycle.
 struct RotationSummary {
-  Rotation rotation = Rotation::kStanding;
-  double cycle_time = 0;   ///< [s]
+  Rotation rotation = Rotation::kStanding;  ///< standing, to and fro, or round
+  double cycle_time = 0;                    ///< [s]
   double revolutions = 0;  ///< path / (2 pi) per cycle, every direction counted positive
   double mean_speed = 0;   ///< path / cycle time [rad/s]
   double peak_speed = 0;   ///< max |speed| [rad/s]

@@ -18,16 +18,16 @@ enum class LoadCertainty {
 
 /// The bearings of one joint: from its wrenches over the duty cycle to a choice with reasons.
 struct JointBearings {
-  RotationSummary rotation;
-  ArrangementLoads loads;
+  RotationSummary rotation;                  ///< over one cycle
+  ArrangementLoads loads;                    ///< of each position, sample by sample
   std::vector<BearingSelection> selections;  ///< one per position
   /// Life of all bearings together at the required reliability [h]; zero if a position is not
   /// filled. With mixed kinds the flatter Weibull slope is taken, which gives the shorter life.
   double system_life_hours = 0;
   double peak_tilting_moment = 0;  ///< greatest moment that a single bearing cannot take [N m]
-  LoadCertainty certainty = LoadCertainty::kCertain;
-  std::vector<std::string> warnings;  ///< about the joint as a whole
-  double asked_system_life = 0;       ///< of two bearings together [h]; zero for a single one
+  LoadCertainty certainty = LoadCertainty::kCertain;  ///< of the wrenches that load them
+  std::vector<std::string> warnings;                  ///< about the joint as a whole
+  double asked_system_life = 0;  ///< of two bearings together [h]; zero for a single one
 
   /// True if every position has a bearing.
   bool complete() const;

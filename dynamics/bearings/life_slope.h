@@ -11,8 +11,8 @@ namespace vmech {
 
 /// A duty cycle (DutyCycle) with the slopes of its numbers.
 struct DutySlopes {
-  std::vector<Dual> duration, speed;
-  std::vector<Wrench<Dual>> wrench;
+  std::vector<Dual> duration, speed;  ///< of each sample [s], [rad/s]
+  std::vector<Wrench<Dual>> wrench;   ///< of each sample, as DutyCycle
 };
 
 /// L_nh = a1 L10h [h] at a reliability [%] of the bearing at a position of the arrangement, as

@@ -26,6 +26,7 @@ struct BearingRequirements {
   /// Of two bearings together, L_nh at the same reliability [h], >= 0; without it `life_hours`.
   std::optional<double> pair_life_hours = std::nullopt;
 
+  /// At the same reliability [h].
   double LifeOfPair() const { return pair_life_hours.value_or(life_hours); }
 
   /// @throws std::invalid_argument with name, value and range.
@@ -65,9 +66,9 @@ enum class Criterion {
 
 /// A requirement that a bearing does not meet.
 struct Shortfall {
-  Criterion criterion;
-  double ratio = 0;  ///< what there is / what is asked, < 1; the nearer to 1 the closer
-  std::string text;  ///< "life 3 200 h of 10 000 h"
+  Criterion criterion;  ///< the figure that is short
+  double ratio = 0;     ///< what there is / what is asked, < 1; the nearer to 1 the closer
+  std::string text;     ///< "life 3 200 h of 10 000 h"
 };
 
 /// Shortfalls that dimensions alone show. Empty if the bearing has room.

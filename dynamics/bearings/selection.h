@@ -11,11 +11,11 @@ namespace vmech {
 
 /// A bearing of the catalogue and what speaks against it.
 struct Candidate {
-  Bearing bearing;
+  Bearing bearing;                      ///< of the catalogue
   std::optional<BearingRating> rating;  ///< absent if the dimensions do not fit
-  std::vector<Shortfall> shortfalls;
+  std::vector<Shortfall> shortfalls;    ///< empty if it fits
 
-  bool fits() const { return shortfalls.empty(); }
+  bool fits() const { return shortfalls.empty(); }  ///< meets every requirement
 };
 
 /// The outcome of a selection.

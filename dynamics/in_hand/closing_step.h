@@ -8,7 +8,7 @@ namespace vmech {
 /// From the velocities of a step to the pose at its end, where the loops are closed.
 class ClosingStep {
  public:
-  ClosingStep(const KinematicTree& tree, const GraspedMechanism& pose);
+  ClosingStep(const KinematicTree& tree, const GraspedMechanism& pose);  ///< keeps references
 
   /// Where the step leads, q+ = q (+) T v+, and from there chord steps C dq = e2 with the factor in
   /// `system`. The first goes along with the step. `d` = -T C' v is what the velocities v+ of the

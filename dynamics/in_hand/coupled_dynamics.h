@@ -27,7 +27,7 @@ enum class DesignStatus {
 
 /// How a hand holds a mechanism.
 struct CoupledGrasp {
-  GraspFrame frame;
+  GraspFrame frame;       ///< on its link, or a point of it
   HandCoupling coupling;  ///< rotational rows do not count for a point grasp
 };
 
@@ -53,6 +53,7 @@ class CoupledDynamics {
   /// range.
   CoupledDynamics(const KinematicTree& tree, std::span<const CoupledGrasp> hands, double step,
                   const VectorXd& q);
+  /// In one hand.
   CoupledDynamics(const KinematicTree& tree, const GraspFrame& grasp, const HandCoupling& coupling,
                   double step, const VectorXd& q);
 
@@ -81,21 +82,25 @@ class CoupledDynamics {
   double design_work() const noexcept { return design_work_; }
   /// Where a hand is in the next step, and how it moves; it stays there.
   void SetHand(const MovingFrame& frame, int hand = 0) noexcept { hands_[hand].at = frame; }
+  /// One period further, every hand where SetHand left it.
   [[nodiscard]] CoupledStatus Step() noexcept;
   /// A step with the first hand at X_WH, moving with V_WH [v; w] at Ho, world axes; or with its
   /// frame in W.
   [[nodiscard]] CoupledStatus Step(const Posed& X_WH, const Vector6d& V_WH) noexcept;
+  /// With the first hand at a frame in W that moves.
   [[nodiscard]] CoupledStatus Step(const MovingFrame& hand) noexcept;
 
   // After the last step.
-  int hands() const noexcept { return static_cast<int>(hands_.size()); }
-  const VectorXd& q() const noexcept { return q_; }
-  auto v() const noexcept { return v_.head(tree_.nv); }
+  int hands() const noexcept { return static_cast<int>(hands_.size()); }  ///< at least 1
+  const VectorXd& q() const noexcept { return q_; }                       ///< [nq], loops closed
+  auto v() const noexcept { return v_.head(tree_.nv); }                   ///< [nv]
+  /// Grasp frame in the world.
   Posed X_WG(int hand = 0) const noexcept { return pose_.X_WG(hand); }
   /// HandError of the hand [6; m, rad].
   Vector6d e1() const noexcept;
   /// The same.
   const Screw& stretch(int hand = 0) const noexcept { return hands_[hand].coupling.e1(); }
+  /// With Jacobians and inertias there.
   const GraspedMechanism& pose() const noexcept { return pose_; }
   Vector6d V_WG(int hand = 0) const noexcept;  ///< of Go, world axes [v; w]
   /// Hand on mechanism during the step, at Go, world axes: what the coupling pulls, and what of it

@@ -17,12 +17,14 @@ class GraspedMechanism {
  public:
   /// Keeps a reference to the tree. `grasps`: of a hand each, at least one.
   GraspedMechanism(const KinematicTree& tree, std::span<const GraspFrame> grasps);
+  /// In one hand.
   GraspedMechanism(const KinematicTree& tree, const GraspFrame& grasp)
       : GraspedMechanism(tree, std::span(&grasp, 1)) {}
 
-  int hands() const noexcept { return static_cast<int>(grasps_.size()); }
+  int hands() const noexcept { return static_cast<int>(grasps_.size()); }  ///< at least 1
   /// Another grasp frame, from the next Set on.
   void SetGrasp(const GraspFrame& grasp, int hand = 0) noexcept { grasps_[hand].frame = grasp; }
+  /// As it is held now.
   const GraspFrame& grasp(int hand = 0) const noexcept { return grasps_[hand].frame; }
 
   /// Takes the numbers of another design, from the next Set on. A hand at its grasp of `from` is at
@@ -38,12 +40,12 @@ class GraspedMechanism {
   /// The other half: grasp frame, Jacobians and inertias.
   void SetJacobians() noexcept;
 
-  Posed X_WG(int hand = 0) const noexcept;
+  Posed X_WG(int hand = 0) const noexcept;         ///< grasp frame in the world, of the last Set
   Frame grasp_frame(int hand = 0) const noexcept;  ///< the same
   /// Where it is after SetLoops already.
   Frame FindGraspFrame(int hand = 0) const noexcept;
-  Posed X_WB(int node) const noexcept;
-  Matrix6Xd J() const;  ///< [6, nv], V_WG = J v
+  Posed X_WB(int node) const noexcept;  ///< frame of a node of the tree in the world
+  Matrix6Xd J() const;                  ///< [6, nv], V_WG = J v
   /// B [8, nv] = root J with zeros below either three rows: B'B = J' root^2 J.
   void ComputeWeightedJacobian(const Screw& root, MatrixXd* B, int hand = 0) const noexcept;
   /// [rows, nv], C v = 0; lengths over the characteristic length, padded with rows of zeros.

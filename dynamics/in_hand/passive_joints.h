@@ -32,7 +32,7 @@ class PassiveJoints {
   /// Limits that the step at next velocities would pass begin to hold, limits that would pull let
   /// go. True if any did.
   bool ChangeLimits(const VectorXd& q, const VectorXd& next_v, double step) noexcept;
-  bool at_limit() const noexcept { return at_limit_; }
+  bool at_limit() const noexcept { return at_limit_; }  ///< some freedom stands at a limit
 
  private:
   /// A coordinate of its own with a spring, friction or limits.

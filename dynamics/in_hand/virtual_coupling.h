@@ -43,10 +43,13 @@ class VirtualCoupling {
   /// Finds w for the grasp's twist at the end of the step. True if it is larger than it may be;
   /// then it is shortened to that.
   bool Pull(const Screw& V_WG) noexcept;
-  void LetGo() noexcept;
+  void LetGo() noexcept;  ///< nothing pulls until the next Pull
 
+  /// [p; r] from the grasp frame to the hand [m, rad]
   const Screw& e1() const noexcept { return e1_; }
+  /// Of the hand on the mechanism at Go, world axes [N, N m].
   const Screw& w() const noexcept { return w_; }
+  /// At its largest wrench, the spring does not grow.
   bool slipping() const noexcept { return slipping_; }
   double energy() const noexcept { return energy_; }  ///< of the spring [J]
   /// The most that the damper can give the mechanism in a step at its twist [J].

@@ -13,17 +13,16 @@ namespace vmech {
 
 /// Motion of one link's drawing frame, world axes.
 struct LinkMotion {
-  Posed X_WL;
-  Vector3d v = Vector3d::Zero(),
-           w = Vector3d::Zero();  ///< velocity of Lo [m/s], angular velocity [rad/s]
-  Vector3d a = Vector3d::Zero(),
-           alpha =
-               Vector3d::Zero();  ///< acceleration of Lo [m/s^2], angular acceleration [rad/s^2]
+  Posed X_WL;                         ///< the frame's pose in the world
+  Vector3d v = Vector3d::Zero();      ///< velocity of Lo [m/s]
+  Vector3d w = Vector3d::Zero();      ///< angular velocity [rad/s]
+  Vector3d a = Vector3d::Zero();      ///< acceleration of Lo [m/s^2]
+  Vector3d alpha = Vector3d::Zero();  ///< angular acceleration [rad/s^2]
 };
 
 /// A motor, and the force that it exerts [N] or [N m].
 struct DriveSample : MotionSample {
-  double force = 0;
+  double force = 0;  ///< along the freedom that it drives [N] or [N m]
 };
 
 /// A joint, and the wrench which its first link exerts on the second, at the second anchor's
@@ -59,10 +58,12 @@ struct UndefinedStart : std::allocator<T> {
   /// The same allocator for another type, as the standard asks for.
   template <typename U>
   struct rebind {
-    using other = UndefinedStart<U>;
+    using other = UndefinedStart<U>;  ///< of allocators for another type
   };
+  /// Leaves the number undefined.
   template <typename U>
   void construct(U* /*number*/) noexcept {}
+  /// Copies a value, as other allocators do.
   template <typename U, typename Value>
   void construct(U* number, const Value& value) {
     *number = value;
@@ -72,33 +73,38 @@ struct UndefinedStart : std::allocator<T> {
 /// The loads at every pose of a study, one array for each quantity with the pose as its first
 /// index, so that a program can read a whole history, such as [poses, joints, 6], where it lies.
 struct LoadArrays {
+  /// Numbers in the order of their indices.
   using Array = std::vector<double, UndefinedStart<double>>;
 
   /// How many there are of everything.
   struct Shape {
-    size_t poses = 0, drives = 0;
-    std::vector<int> freedoms;    ///< of each joint
-    size_t links = 0;             ///< 0 if their motion is not wanted
-    bool has_hand = false;        ///< a hand drives
-    bool has_pose_state = false;  ///< there may be something to say in PoseState
+    size_t poses = 0, drives = 0;  ///< of all poses; of joint drives alone
+    std::vector<int> freedoms;     ///< of each joint
+    size_t links = 0;              ///< 0 if their motion is not wanted
+    bool has_hand = false;         ///< a hand drives
+    bool has_pose_state = false;   ///< there may be something to say in PoseState
   };
 
   LoadArrays() = default;
   /// The numbers of the arrays are undefined, everything else has its defaults.
   explicit LoadArrays(const Shape& shape);
 
-  size_t pose_count() const { return times.size(); }
-  size_t drive_count = 0;
+  size_t pose_count() const { return times.size(); }  ///< as many as `times`
+  size_t drive_count = 0;                             ///< joint drives; a hand is none
+  /// Those that are cut are counted too.
   size_t joint_count() const { return first_freedom.size() - 1; }
+  /// Of all joints together.
   size_t freedom_count() const { return static_cast<size_t>(first_freedom.back()); }
-  size_t link_count = 0;
+  size_t link_count = 0;  ///< 0 if their motion was not wanted
 
   /// One joint at one pose.
   JointSample Joint(size_t pose, size_t joint) const;
+  /// What a joint transmits at a pose, as JointSample.
   Wrenchd Wrench(size_t pose, size_t joint) const {
     const double* w = &wrenches[6 * (pose * joint_count() + joint)];
     return {{w[0], w[1], w[2]}, {w[3], w[4], w[5]}};
   }
+  /// What that drive prescribes, and the force that it takes.
   DriveSample Drive(size_t pose, size_t drive) const {
     const size_t at = pose * drive_count + drive;
     return {drives[at], drive_forces[at]};
@@ -132,18 +138,21 @@ std::vector<int> FreedomsOfJoints(const Mechanism& mechanism);
 template <typename Range>
 class IndexIterator {
  public:
-  using iterator_category = std::input_iterator_tag;
-  using value_type = typename Range::value_type;
-  using difference_type = ptrdiff_t;
-  using pointer = void;
-  using reference = value_type;
+  using iterator_category = std::input_iterator_tag;  ///< each element is made anew
+  using value_type = typename Range::value_type;      ///< what operator[] gives
+  using difference_type = ptrdiff_t;                  ///< between two indices
+  using pointer = void;                               ///< elements have no address
+  using reference = value_type;                       ///< by value
 
+  /// The range must outlive it.
   IndexIterator(const Range* range, size_t index) : range_(range), index_(index) {}
-  value_type operator*() const { return (*range_)[index_]; }
+  value_type operator*() const { return (*range_)[index_]; }  ///< the element here
+  /// Goes on to the next index.
   IndexIterator& operator++() {
     ++index_;
     return *this;
   }
+  /// Of the same range.
   bool operator==(const IndexIterator& other) const { return index_ == other.index_; }
 
  private:
@@ -154,14 +163,17 @@ class IndexIterator {
 /// The joints at one pose.
 class JointLoads {
  public:
-  using value_type = JointSample;
+  using value_type = JointSample;  ///< of the standard's containers
 
   JointLoads() = default;
+  /// The arrays must outlive it.
   JointLoads(const LoadArrays* arrays, size_t pose) : arrays_(arrays), pose_(pose) {}
+  /// Joints of the mechanism; 0 of none.
   size_t size() const { return arrays_ == nullptr ? 0 : arrays_->joint_count(); }
+  /// In the mechanism's order.
   JointSample operator[](size_t joint) const { return arrays_->Joint(pose_, joint); }
-  IndexIterator<JointLoads> begin() const { return {this, 0}; }
-  IndexIterator<JointLoads> end() const { return {this, size()}; }
+  IndexIterator<JointLoads> begin() const { return {this, 0}; }     ///< at the first joint
+  IndexIterator<JointLoads> end() const { return {this, size()}; }  ///< behind the last
 
  private:
   const LoadArrays* arrays_ = nullptr;
@@ -171,14 +183,17 @@ class JointLoads {
 /// The joint drives at one pose.
 class DriveLoads {
  public:
-  using value_type = DriveSample;
+  using value_type = DriveSample;  ///< of the standard's containers
 
   DriveLoads() = default;
+  /// The arrays must outlive it.
   DriveLoads(const LoadArrays* arrays, size_t pose) : arrays_(arrays), pose_(pose) {}
+  /// Joint drives; 0 if a hand drives.
   size_t size() const { return arrays_ == nullptr ? 0 : arrays_->drive_count; }
+  /// In the study's order.
   DriveSample operator[](size_t drive) const { return arrays_->Drive(pose_, drive); }
-  IndexIterator<DriveLoads> begin() const { return {this, 0}; }
-  IndexIterator<DriveLoads> end() const { return {this, size()}; }
+  IndexIterator<DriveLoads> begin() const { return {this, 0}; }     ///< at the first drive
+  IndexIterator<DriveLoads> end() const { return {this, size()}; }  ///< behind the last
 
  private:
   const LoadArrays* arrays_ = nullptr;
@@ -188,18 +203,19 @@ class DriveLoads {
 /// One pose of the study: a view that keeps the arrays alive which it looks into.
 struct PoseLoads : PoseState {
   PoseLoads() = default;
+  /// Shares the arrays, copies nothing.
   PoseLoads(std::shared_ptr<const LoadArrays> arrays, size_t pose);
 
-  double time = 0;
+  double time = 0;        ///< [s]
   DriveLoads drives;      ///< of each joint drive
   Wrenchd hand;           ///< w_d: what the hand does to the mechanism at Go, world axes
   double hand_error = 0;  ///< distance that the hand is off the grasp frame [m]
   JointLoads joints;      ///< of each joint of the mechanism
   std::span<const LinkMotion> links;  ///< empty if LoadStudyOptions::link_motions is off
   // As the arrays of these names.
-  double power = 0, power_error = 0, power_error_scale = 0;
-  double smallest_pivot = 1;
-  double closure = 0;
+  double power = 0, power_error = 0, power_error_scale = 0;  ///< as LoadArrays::powers etc.
+  double smallest_pivot = 1;  ///< [-], as LoadArrays::smallest_pivots
+  double closure = 0;         ///< [-], how far the loops are open
 
  private:
   std::shared_ptr<const LoadArrays> arrays_;
@@ -208,18 +224,19 @@ struct PoseLoads : PoseState {
 /// The poses of a study in their order.
 class PoseSeries {
  public:
-  using value_type = PoseLoads;
+  using value_type = PoseLoads;  ///< of the standard's containers
 
   PoseSeries() : PoseSeries(std::make_shared<LoadArrays>()) {}
+  /// Shares them.
   explicit PoseSeries(std::shared_ptr<const LoadArrays> arrays) : arrays_(std::move(arrays)) {}
 
-  size_t size() const { return arrays_->pose_count(); }
-  bool empty() const { return size() == 0; }
-  PoseLoads operator[](size_t pose) const { return {arrays_, pose}; }
-  PoseLoads front() const { return (*this)[0]; }
-  PoseLoads back() const { return (*this)[size() - 1]; }
-  IndexIterator<PoseSeries> begin() const { return {this, 0}; }
-  IndexIterator<PoseSeries> end() const { return {this, size()}; }
+  size_t size() const { return arrays_->pose_count(); }                ///< poses
+  bool empty() const { return size() == 0; }                           ///< before a study has run
+  PoseLoads operator[](size_t pose) const { return {arrays_, pose}; }  ///< in [0, size())
+  PoseLoads front() const { return (*this)[0]; }                       ///< the study's start
+  PoseLoads back() const { return (*this)[size() - 1]; }               ///< its end
+  IndexIterator<PoseSeries> begin() const { return {this, 0}; }        ///< at the first pose
+  IndexIterator<PoseSeries> end() const { return {this, size()}; }     ///< behind the last
 
   /// All of them, without a copy.
   const LoadArrays& arrays() const { return *arrays_; }

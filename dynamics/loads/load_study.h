@@ -14,15 +14,15 @@ namespace vmech {
 
 /// A motor at a joint: one freedom of the joint moves as prescribed, whatever force that takes.
 struct JointDrive {
-  int joint = -1;
-  int freedom = 0;
-  MotionLaw law = MotionLaw::Uniform(0, 0);
+  int joint = -1;                            ///< index in Mechanism::joints
+  int freedom = 0;                           ///< counted from 0
+  MotionLaw law = MotionLaw::Uniform(0, 0);  ///< of the coordinate [m] or [rad], over time
 };
 
 /// A hand at a grasp: the mechanism follows it as closely as its loops allow (paper eq. 7).
 struct HandDrive {
-  int grasp = -1;
-  HandLaw law;
+  int grasp = -1;  ///< index in Mechanism::grasps
+  HandLaw law;     ///< where the hand is over time
   /// Weights of the pose error [N/m] and [N m/rad] (the rendering stiffness of paper eq. 11). Zero
   /// takes 1 N/m, and the square of the mechanism's characteristic length for rotations.
   Vector6d stiffness = Vector6d::Zero();
@@ -34,7 +34,7 @@ struct LoadTableOf {
   Vector3<T> p_L = Vector3<T>::Zero();  ///< point of application in the link's drawing frame [m]
   /// Rows of the table, increasing; a single row where constant. Linear between rows.
   std::vector<T> at;
-  std::vector<Wrench<T>> wrenches;
+  std::vector<Wrench<T>> wrenches;  ///< [rows] force [N], then moment [N m] about the point
   /// Length after which the table repeats, in units of `at`; 0 if it does not. Outside a table that
   /// does not repeat the study is refused.
   T period = 0;
@@ -42,24 +42,26 @@ struct LoadTableOf {
 
 /// A wrench from outside on a link.
 struct ExternalLoad : LoadTableOf<double> {
+  /// Of the wrench's components.
   enum class Axes { kWorld, kLink };
+  /// What `at` counts.
   enum class Over { kConstant, kTime, kDriveCoordinate };
 
-  int link = -1;
-  Axes axes = Axes::kWorld;
-  Over over = Over::kConstant;
+  int link = -1;                ///< index in Mechanism::links
+  Axes axes = Axes::kWorld;     ///< the link's are those of its drawing
+  Over over = Over::kConstant;  ///< [s], [m] or [rad] of the first drive
 };
 
 /// What is to be computed: a mechanism, its motion, and what acts on it.
 struct LoadStudy {
-  Mechanism mechanism;
+  Mechanism mechanism;             ///< as its file describes it
   std::vector<JointDrive> drives;  ///< empty if the hand drives, or for a structure at rest
-  std::optional<HandDrive> hand;
-  std::vector<double> times;  ///< of the poses, increasing [s]
+  std::optional<HandDrive> hand;   ///< drives in place of `drives`
+  std::vector<double> times;       ///< of the poses, increasing [s]
   /// Length of the cycle [s] if the motion repeats after it; 0 if it is one passage.
   double cycle = 0;
-  std::vector<ExternalLoad> external;
-  ReactionRule rule = ReactionRule::kStiffness;
+  std::vector<ExternalLoad> external;            ///< act at every pose, beside weight
+  ReactionRule rule = ReactionRule::kStiffness;  ///< how what statics leaves open is shared out
   bool stop_at_limits = false;  ///< refuse a motion that leaves the limits of a joint
   /// Of messages: those of the study's figures.
   DisplayUnits units;
@@ -77,7 +79,7 @@ struct LoadStudyOptions {
   /// Called now and then with the number of poses done; false stops the study.
   std::function<bool(size_t done)> progress;
 
-  void Validate() const;
+  void Validate() const;  ///< @throws std::invalid_argument naming field, value and range
 };
 
 }  // namespace vmech

@@ -13,12 +13,12 @@ namespace vmech {
 /// A study made ready: the tree with the driven joints whole, assembled at the file's start values,
 /// and its freedoms divided among drives.
 struct PreparedStudy {
-  LoadModel model;
-  VectorXd q_start;  ///< closed pose near the start values
-  Mobility mobility;
-  double closure_tolerance = 0;   ///< as AssembledMechanism::closure_tolerance
-  std::vector<std::string> idle;  ///< names of idle freedoms
-  std::vector<std::string> warnings, notes;
+  LoadModel model;                           ///< what every pose is computed with
+  VectorXd q_start;                          ///< closed pose near the start values
+  Mobility mobility;                         ///< with drives released
+  double closure_tolerance = 0;              ///< as AssembledMechanism::closure_tolerance
+  std::vector<std::string> idle;             ///< names of idle freedoms
+  std::vector<std::string> warnings, notes;  ///< for the user; `notes` of the assembly
 };
 
 /// @throws std::invalid_argument if the study contradicts itself (drive and hand, a joint

@@ -22,8 +22,8 @@ class OpenReactions {
 
   /// The part of a matrix T [n, rows] that belongs to the multipliers of one loop.
   struct Block {
-    size_t loop;
-    MatrixXd T;  ///< [n, rows of the loop]
+    size_t loop;  ///< index in KinematicTree::loops
+    MatrixXd T;   ///< [n, rows of the loop]
   };
   /// For each row t of T, which is zero but for its blocks, these in the order of their loops: how
   /// much t' mu can be for open multipliers of unit length [n]. It is |Z' t|, the columns of Z an

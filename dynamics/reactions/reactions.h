@@ -14,8 +14,8 @@ namespace vmech {
 /// zero along its freedoms, which hold nothing. A universal joint is soft about the direction that
 /// is neither of its axes; that is its z entry.
 struct JointCompliance {
-  Vector3d force = Vector3d::Zero();
-  Vector3d moment = Vector3d::Zero();
+  Vector3d force = Vector3d::Zero();   ///< [m/N]
+  Vector3d moment = Vector3d::Zero();  ///< [rad/(N m)]
 };
 
 /// Compliances for a rule. `stiffness` takes the inverses of a joint's stiffness; where a joint
@@ -41,6 +41,7 @@ inline constexpr double kDefaultStiffness = 1e8;  ///< [N/m], of a medium-sized 
 template <typename T>
 class ReactionSolver {
  public:
+  /// Keeps references; `compliances` per joint.
   ReactionSolver(const KinematicTree& tree, const CoordinatePartition& partition,
                  const std::vector<JointCompliance>& compliances);
 

@@ -13,6 +13,7 @@ namespace vmech {
 /// Inertia of every node, node i at i + 1.
 template <typename T>
 struct TreeInertias {
+  /// Sizes everything, and takes the tree's numbers.
   explicit TreeInertias(const KinematicTree& tree);
   /// With other numbers than the tree's.
   TreeInertias(const KinematicTree& tree, const TreeDesign<T>& design);
@@ -22,8 +23,8 @@ struct TreeInertias {
 
   /// As in TreeNode, axes of the node.
   struct Body {
-    T mass = T(0);
-    Triple<T> p_BoBcm{};
+    T mass = T(0);               ///< [kg]
+    Triple<T> p_BoBcm{};         ///< centre of mass from the node's origin [m]
     Triple<T> Ix{}, Iy{}, Iz{};  ///< columns of I_Bcm
   };
   std::vector<Body> in_node;             ///< of the tree
@@ -32,14 +33,14 @@ struct TreeInertias {
   // CompositeMassMatrix's own: each node with all that hangs on it; what other nodes than the next
   // have given to a node, if any have; and the places of M that are not zero, velocity by velocity
   // with those on the way to the ground.
-  std::vector<ScrewInertiaT<T>> composites, received;
-  std::vector<char> has_received;
+  std::vector<ScrewInertiaT<T>> composites, received;  ///< about the reference point
+  std::vector<char> has_received;                      ///< per node: `received` holds something
   /// A pair of velocity indices whose entry in the mass matrix is not zero.
   struct Entry {
-    int node, v, u;
+    int node, v, u;    ///< the node, indices in the velocities
     int above, below;  ///< (u, v) and (v, u) in M
   };
-  std::vector<Entry> entries;
+  std::vector<Entry> entries;  ///< of all nodes
 };
 
 /// Gravity is applied by giving the ground the acceleration -g, once, so that no body needs a

@@ -45,6 +45,7 @@ class Differentiation {
         for (const Dual& p : X.p) size_ = std::max(size_, std::abs(p.slope));
       }
     }
+    result_.pose_numbers = change.pose_numbers;
     result_.first_freedom = {0};
     for (int freedoms : FreedomsOfJoints(model.tree.mechanism)) {
       result_.first_freedom.push_back(result_.first_freedom.back() + freedoms);
@@ -56,6 +57,7 @@ class Differentiation {
     result_.drive_forces.resize(motion.size() * model.drives.size());
     result_.rates.resize(motion.size() * freedoms());
     result_.ground_forces.resize(motion.size() * 3);
+    result_.axes.resize(motion.size() * 6 * joints());
     result_.grasps.resize(motion.size() * 3 * model.tree.mechanism.grasps.size());
   }
 
@@ -95,7 +97,7 @@ class Differentiation {
     if (ws->jammed) {
       throw std::runtime_error(fmt::format(
           "pose {} (t = {:.6g} s): friction locks the mechanism, and its loads have no derivative",
-          pose, motion_.times[pose]));
+          result_.pose_number(pose), motion_.times[pose]));
     }
     RequireClosed(pose, *ws);
     Store(pose, *ws);
@@ -112,7 +114,7 @@ class Differentiation {
                     "= {:.6g} s): "
                     "the mechanism moves, or can be assembled, for this value alone",
                     model_.tree.mechanism.joints[model_.tree.loops[ws.opening.loop].joint].name,
-                    pose, motion_.times[pose]));
+                    result_.pose_number(pose), motion_.times[pose]));
   }
 
   template <typename T>
@@ -125,13 +127,14 @@ class Differentiation {
       const size_t count = static_cast<size_t>(result_.first_freedom[j + 1]) - first;
       StoreDuals(load.W_F.Stacked().data(), 6, &result_.wrenches[6 * (joints() * pose + j)],
                  6 * joints());
+      StoreDuals(AxisOf(ws, j).data(), 6, &result_.axes[6 * (joints() * pose + j)], 6 * joints());
       StoreDuals(load.rate.data(), count, result_.rates.data() + freedoms() * pose + first,
                  freedoms());
     }
     StoreDuals(GroundForce(ws).data(), 3, &result_.ground_forces[3 * pose], 3);
     const std::vector<Grasp>& grasps = model_.tree.mechanism.grasps;
     for (size_t g = 0; g < grasps.size(); ++g) {
-      StoreDuals(OriginOf(grasps[g], ws).data(), 3, &result_.grasps[3 * (grasps.size() * pose + g)],
+      StoreDuals(OriginOf(g, ws).data(), 3, &result_.grasps[3 * (grasps.size() * pose + g)],
                  3 * grasps.size());
     }
   }
@@ -148,19 +151,28 @@ class Differentiation {
     return force;
   }
 
+  /// Where a joint is, and its z axis.
   template <typename T>
-  Vector3<T> OriginOf(const Grasp& grasp, const LoadWorkspace<T>& ws) const {
-    const int node = model_.tree.NodeOfLink(grasp.link);
+  Eigen::Vector<T, 6> AxisOf(const LoadWorkspace<T>& ws, size_t joint) const {
+    const FrameT<T>& F = ws.joints[joint].F;
+    Eigen::Vector<T, 6> axis;
+    axis << Vector3Of(F.p) + ws.tree.reference.template cast<T>(), Vector3Of(F.z);
+    return axis;
+  }
+
+  template <typename T>
+  Vector3<T> OriginOf(size_t grasp, const LoadWorkspace<T>& ws) const {
+    const int node = model_.tree.NodeOfLink(model_.tree.mechanism.grasps[grasp].link);
     const FrameT<T> X_WL = ws.tree.at(node).X * ws.tree.at(node).X_BL;
-    const Vector3<T> p = Vector3Of(PointInWorld(X_WL, TripleOf<T>(grasp.X_LG.p.cast<T>())));
-    return p + ws.tree.reference.template cast<T>();
+    const Vector3<T> p_LG = change_.grasps[grasp].template cast<T>();
+    return Vector3Of(PointInWorld(X_WL, TripleOf<T>(p_LG))) + ws.tree.reference.template cast<T>();
   }
 
   [[noreturn]] void Refuse(size_t pose) const {
     const bool rests = model_.has_dry_friction && AnyStands(model_, motion_, pose, 1);
     throw std::runtime_error(fmt::format(
-        "pose {} (t = {:.6g} s): {}, so that its loads have no derivative. {}", pose,
-        motion_.times[pose],
+        "pose {} (t = {:.6g} s): {}, so that its loads have no derivative. {}",
+        result_.pose_number(pose), motion_.times[pose],
         rests ? "a drive stands still and dry friction holds" : "the mechanism is at a dead centre",
         rests ? "Leave the pose out of the study" : "Choose another start or number of steps"));
   }

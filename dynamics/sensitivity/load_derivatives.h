@@ -16,10 +16,16 @@ struct LoadDerivatives {
   std::vector<Dual> rates;          ///< [poses, freedoms]
   std::vector<Dual> ground_forces;  ///< [poses, 3] of the ground on the mechanism, world axes [N]
   std::vector<Dual> grasps;         ///< [poses, grasps, 3] their origins in the world [m]
-  std::vector<int> first_freedom;   ///< [joints + 1]
+  /// [poses, joints, 6] where each joint is, and its z axis: of its first anchor, in the world [m]
+  std::vector<Dual> axes;
+  std::vector<int> first_freedom;  ///< [joints + 1]
 
-  size_t poses() const { return times.size(); }
-  size_t joints() const { return first_freedom.size() - 1; }
+  std::vector<size_t> pose_numbers;  ///< StudyChange::pose_numbers
+
+  size_t poses() const { return times.size(); }  ///< that were differentiated
+  /// Of a pose in the whole motion.
+  size_t pose_number(size_t pose) const { return pose_numbers.empty() ? pose : pose_numbers[pose]; }
+  size_t joints() const { return first_freedom.size() - 1; }  ///< of the mechanism
 };
 
 /// Why the loads of a study cannot be differentiated; empty where they can.

@@ -80,6 +80,7 @@ std::vector<double> NumbersOfStudy(LoadStudy study) {
   const auto collect = [&](const double& number) { numbers.push_back(number); };
   Design<double> design = DesignOf(study.mechanism);
   VisitDesign(&design, collect);
+  for (Grasp& grasp : study.mechanism.grasps) VisitVector(grasp.X_LG.p, collect);
   for (ExternalLoad& load : study.external) VisitTable<double>(&load, collect);
   std::vector<MotionSample> samples = SamplesOf(study);
   VisitSamples(&samples, collect);
@@ -98,6 +99,7 @@ void Spread(const std::vector<double>& slopes, StudyChange* change) {
     }
   };
   VisitDesign(&change->design, give);
+  for (Vector3<Dual>& grasp : change->grasps) VisitVector(grasp, give);
   for (LoadTableOf<Dual>& table : change->prescribed.external) VisitTable(&table, give);
   VisitSamples(&change->prescribed.drives, give);
   for (double& time : change->prescribed.times) give(time);
@@ -128,6 +130,9 @@ StudyChange WithoutSlopes(const PreparedStudy& prepared, const Motion& motion) {
   const LoadModel& model = prepared.model;
   StudyChange change;
   change.design = DesignOf(model.tree.mechanism).cast<Dual>();
+  for (const Grasp& grasp : model.tree.mechanism.grasps) {
+    change.grasps.push_back(grasp.X_LG.p.cast<Dual>());
+  }
   change.prescribed.times.assign(motion.size(), 0);
   change.prescribed.drives.assign(motion.drives.size(), MotionSample{});
   for (const ExternalLoad& load : model.external) {
@@ -140,6 +145,7 @@ size_t CountNumbers(StudyChange* change) {
   size_t count = 1;  // the cycle
   const auto visit = [&](const auto& /*number*/) { ++count; };
   VisitDesign(&change->design, visit);
+  for (Vector3<Dual>& grasp : change->grasps) VisitVector(grasp, visit);
   for (LoadTableOf<Dual>& table : change->prescribed.external) VisitTable(&table, visit);
   return count + 3 * change->prescribed.drives.size() + change->prescribed.times.size();
 }

@@ -17,9 +17,12 @@ using StudyAt = std::function<LoadStudy(double value)>;
 /// How all that the loads of a study depend on goes with one parameter, per unit of it. The values
 /// of the duals are those of the study.
 struct StudyChange {
-  Design<Dual> design;
-  PrescribedSlopes prescribed;
-  double cycle = 0;     ///< slope of LoadStudy::cycle
+  Design<Dual> design;                ///< numbers of links and joints
+  PrescribedSlopes prescribed;        ///< of drives and external loads
+  std::vector<Vector3<Dual>> grasps;  ///< their origins, in their links
+  double cycle = 0;                   ///< slope of LoadStudy::cycle
+  /// Of a part of a motion the numbers of its poses in the whole, for messages; else empty.
+  std::vector<size_t> pose_numbers;
   double rounding = 0;  ///< of the slope of a number of order 1, such as an angle
   /// Stiffnesses of joints change, by which the rule `stiffness` shares what statics leaves open.
   bool shares = false;

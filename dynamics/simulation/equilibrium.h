@@ -31,12 +31,12 @@ constexpr std::string_view NameOf(Stability stability) {
 /// A pose at which weight, springs, motors, external loads and the hand's spring balance, as they
 /// are at the start; without dry friction, which would only widen it.
 struct Equilibrium {
-  bool found = false;
+  bool found = false;   ///< forces balance within the tolerance
   std::string message;  ///< why not, or what is left
   KinematicTree tree;   ///< of the assembled mechanism
   VectorXd q;           ///< [nq], loops closed
   double residual = 0;  ///< largest force that is left along a free motion [N], [N m]
-  int iterations = 0;
+  int iterations = 0;   ///< steps downhill
   Stability stability = Stability::kStable;  ///< of those that can move
 };
 

@@ -11,10 +11,10 @@ namespace vmech {
 
 /// An initial value problem, y' = f(t, y), or F(t, y, y') = 0.
 struct InitialValueProblem {
-  int size = 0;
+  int size = 0;  ///< numbers in y
   /// Writes f, or F of y and y' (which is null for f). False if there is none.
   std::function<bool(double t, const double* y, const double* slopes, double* out)> evaluate;
-  double relative_tolerance = 1e-9;
+  double relative_tolerance = 1e-9;         ///< of each y, on a step
   std::vector<double> absolute_tolerances;  ///< [size]
   double max_step = 0;                      ///< [s]; 0: none
   // Of F.
@@ -24,8 +24,8 @@ struct InitialValueProblem {
 
 /// What an integrator has done since it began.
 struct IntegratorCounts {
-  long steps = 0, evaluations = 0, error_test_failures = 0;
-  long nonlinear_iterations = 0, nonlinear_failures = 0, jacobians = 0;
+  long steps = 0, evaluations = 0, error_test_failures = 0;              ///< since it began
+  long nonlinear_iterations = 0, nonlinear_failures = 0, jacobians = 0;  ///< of BDF and IDAS
 };
 
 /// One step after another through a problem, as large as its tolerances allow.
@@ -41,8 +41,8 @@ class Integrator {
   virtual const double* y() const = 0;  ///< there
   /// y [size] at a time within the last step.
   virtual void At(double t, double* y) = 0;
-  virtual IntegratorCounts counts() const = 0;
-  virtual std::string error() const = 0;
+  virtual IntegratorCounts counts() const = 0;  ///< zero before the first step
+  virtual std::string error() const = 0;        ///< a sentence; empty while all goes well
 };
 
 /// By SUNDIALS: CVODES for kAdams and kBdf, IDAS for kIdas. The problem must outlive it.

@@ -25,10 +25,10 @@ struct Mode {
 /// N the free motions, at a pose where it stands still. With gravity, springs, dampers, motors,
 /// external loads and the hand's coupling; without dry friction.
 struct Modes {
-  KinematicTree tree;
-  VectorXd q;               ///< [nq]
-  std::vector<Mode> modes;  ///< by |eigenvalue|, slowest first
-  Stability stability = Stability::kStable;
+  KinematicTree tree;                        ///< of the assembled mechanism
+  VectorXd q;                                ///< [nq]
+  std::vector<Mode> modes;                   ///< by |eigenvalue|, slowest first
+  Stability stability = Stability::kStable;  ///< by the eigenvalues
   double residual = 0;                ///< largest force along a free motion: 0 at an equilibrium
   MatrixXd mass, damping, stiffness;  ///< [freedoms, freedoms] N'M N, D, K
   MatrixXd free_motions;              ///< N [nv, freedoms]

@@ -18,10 +18,10 @@ struct PreparedSimulation {
   /// loads are constant ones to be filled in, one for each and one for the hand. Friction is not
   /// its business.
   LoadModel model;
-  VectorXd q;  ///< [nq], closed
-  Mobility mobility;
-  double closure_tolerance = 0;  ///< as AssembledMechanism::closure_tolerance
-  std::vector<std::string> notes;
+  VectorXd q;                      ///< [nq], closed
+  Mobility mobility;               ///< drives held
+  double closure_tolerance = 0;    ///< as AssembledMechanism::closure_tolerance
+  std::vector<std::string> notes;  ///< what the assembly moved
 };
 
 /// @throws as Simulate.

@@ -17,8 +17,8 @@ namespace vmech {
 
 /// One freedom of a joint.
 struct FreedomId {
-  int joint = -1;
-  int freedom = 0;
+  int joint = -1;   ///< index in Mechanism::joints; -1: none
+  int freedom = 0;  ///< counted from 0
 };
 
 /// A number over time: linear between rows, a single row is constant. A table without a period
@@ -36,23 +36,24 @@ struct TimeTable {
 /// prescribed, whatever force that takes, is a JointDrive; at a given speed it is
 /// MotionLaw::Uniform.)
 struct JointMotor {
+  /// How its force comes about.
   enum class Law {
     kForce,       ///< F(t) of `force`
     kController,  ///< stiffness (wanted position - q) + damping (wanted rate - q')
   };
 
-  FreedomId at;  ///< not of a spherical joint
-  Law law = Law::kForce;
-  TimeTable force;       ///< kForce [N] or [N m]
-  MotionLaw wanted;      ///< kController: position and rate
-  double stiffness = 0;  ///< >= 0 [N/m] or [N m/rad]; 0 holds the speed alone
-  double damping = 0;    ///< >= 0 [N s/m] or [N m s/rad]
+  FreedomId at;           ///< not of a spherical joint
+  Law law = Law::kForce;  ///< decides which of the following count
+  TimeTable force;        ///< kForce [N] or [N m]
+  MotionLaw wanted;       ///< kController: position and rate
+  double stiffness = 0;   ///< >= 0 [N/m] or [N m/rad]; 0 holds the speed alone
+  double damping = 0;     ///< >= 0 [N s/m] or [N m s/rad]
   double max_force = std::numeric_limits<double>::infinity();  ///< > 0 [N] or [N m]
 };
 
 /// A hand that holds a grasp by a spring and a damper, and moves as its table or its callback says.
 struct GraspSpring {
-  int grasp = -1;
+  int grasp = -1;                          ///< index in Mechanism::grasps
   HandLaw law;                             ///< a pose table, or
   std::function<HandSample(double)> hand;  ///< a callback of time, if there is one
   HandCoupling coupling;                   ///< rotational rows do not count for a point grasp
@@ -61,20 +62,20 @@ struct GraspSpring {
 /// What happens at the limits of a freedom (Joint::lower, upper): it rebounds with `restitution`
 /// times its speed until it rests there.
 struct LimitRebound {
-  FreedomId at;
+  FreedomId at;            ///< with a limit that is finite
   double restitution = 0;  ///< [0, 1]; that of freedoms that are not named is 0
 };
 
 /// A coordinate of a joint that is looked out for.
 struct CoordinateWatch {
-  FreedomId at;
+  FreedomId at;           ///< whose coordinate
   double value = 0;       ///< [m] or [rad]; as the coordinate counts whole turns
   bool ends_run = false;  ///< the simulation ends there
 };
 
 /// The rate of one freedom at the start.
 struct StartRate {
-  FreedomId at;
+  FreedomId at;     ///< any freedom of any joint
   double rate = 0;  ///< [m/s] or [rad/s]; of a spherical joint about x, y or z of its second anchor
 };
 
@@ -87,24 +88,24 @@ enum class SimulationStart {
 /// What is to be simulated: a mechanism, what acts on it, and where it starts. Springs, dampers,
 /// dry friction (constant, and in proportion to loads) and limits are those of its joints.
 struct Simulation {
-  Mechanism mechanism;
+  Mechanism mechanism;  ///< as its file describes it
 
   std::vector<JointDrive> drives;  ///< freedoms that move as prescribed, whatever force that takes
-  std::vector<JointMotor> motors;
+  std::vector<JointMotor> motors;  ///< that exert forces or controllers
   /// Wrenches on links. Tables over a drive's coordinate are read at `table_coordinate`.
   std::vector<ExternalLoad> external;
   /// The first drive's, or else the first motor's, if it is not given.
   std::optional<FreedomId> table_coordinate;
-  std::optional<GraspSpring> hand;
-  std::vector<LimitRebound> rebounds;
+  std::optional<GraspSpring> hand;     ///< holds one grasp, or nobody does
+  std::vector<LimitRebound> rebounds;  ///< of freedoms with limits
 
-  SimulationStart start = SimulationStart::kAsDrawn;
+  SimulationStart start = SimulationStart::kAsDrawn;  ///< as drawn, or at its equilibrium
   /// Rates that are not given follow from these: the motion with the least kinetic energy. What the
   /// loops do not allow is projected (SimulationResult::moved_rates).
   std::vector<StartRate> start_rates;
 
   std::vector<double> times;  ///< at which results are wanted, increasing, the first one the start
-  std::vector<CoordinateWatch> watches;
+  std::vector<CoordinateWatch> watches;  ///< looked out for all the time
 
   ReactionRule rule = ReactionRule::kStiffness;  ///< for the joints' wrenches, as in a LoadStudy
   double norm_length = 0;                        ///< as there [m]
@@ -140,7 +141,7 @@ constexpr std::string_view NameOf(SimulationMethod method) {
 
 /// How a simulation is integrated, and how exactly.
 struct SimulationOptions {
-  SimulationMethod method = SimulationMethod::kAutomatic;
+  SimulationMethod method = SimulationMethod::kAutomatic;  ///< which integrator, on which equations
   /// Local error of coordinates and rates, relative, [1e-14, 1e-2]. Chaotic and fast mechanisms
   /// need less.
   double relative_tolerance = 1e-10;
@@ -158,7 +159,7 @@ struct SimulationOptions {
   /// all that it has computed.
   std::function<bool(double time)> progress;
 
-  void Validate() const;
+  void Validate() const;  ///< @throws std::invalid_argument naming field, value and range
 };
 
 }  // namespace vmech

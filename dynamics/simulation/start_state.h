@@ -9,8 +9,8 @@ namespace vmech {
 
 /// Where a simulation begins: on its loops, with rates that they allow.
 struct StartState {
-  VectorXd q, v;  ///< [nq], [nv]
-  std::vector<MovedRate> moved_rates;
+  VectorXd q, v;                       ///< [nq], [nv]
+  std::vector<MovedRate> moved_rates;  ///< those that the loops did not allow
 };
 
 /// The given rates as nearly as loops and drives allow, lengths over the characteristic length, and

@@ -28,7 +28,7 @@ class SuddenEvents {
   void LookAround(double time, const VectorXd& y);
   /// When something happens, and what.
   struct Found {
-    double time = 0;
+    double time = 0;        ///< [s]
     bool changes = false;   ///< what rests or is closed: Pass goes on from there
     bool ends_run = false;  ///< a watched coordinate does
   };

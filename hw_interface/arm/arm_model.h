@@ -19,8 +19,8 @@ using JointArray = Eigen::Array<double, kMaxArmJoints, 1>;
 /// A master that is an arm: an open chain of revolute and prismatic joints with its mass
 /// properties, limits and passive forces. World of the tree is the master's base D.
 struct ArmDescription {
-  KinematicTree tree;
-  int handle_node = -1;
+  KinematicTree tree;     ///< its root is D; one node to a joint
+  int handle_node = -1;   ///< index in the tree's nodes
   Posed X_BH;             ///< the handle in its node
   VectorXd torque_limit;  ///< of each motor [N m] or [N]
   VectorXd posture;       ///< the nominal posture [rad] or [m]
@@ -40,14 +40,15 @@ class ArmModel {
   /// @throws std::invalid_argument if the arm is not an open chain of at most kMaxArmJoints joints.
   explicit ArmModel(std::shared_ptr<const ArmDescription> arm);
 
-  const ArmDescription& description() const noexcept { return *arm_; }
+  const ArmDescription& description() const noexcept { return *arm_; }  ///< as it was given
+  /// The same, to keep.
   std::shared_ptr<const ArmDescription> shared_description() const noexcept { return arm_; }
-  int joints() const noexcept { return arm_->tree.nv; }
+  int joints() const noexcept { return arm_->tree.nv; }  ///< at most kMaxArmJoints
 
   /// Everything below is at the posture set last; `q` has joints() entries.
   void SetPosture(const double* q) noexcept;
 
-  Posed X_DH() const noexcept;
+  Posed X_DH() const noexcept;    ///< the handle in the device's base
   const Matrix6Xd& J() noexcept;  ///< [6, joints], about Ho, axes of D
   /// Columns of J about Do [joints].
   const std::vector<Screw>& S() const noexcept { return ws_.S; }

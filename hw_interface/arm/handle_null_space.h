@@ -11,7 +11,7 @@ namespace vmech {
 /// J. No allocation.
 class HandleNullSpace {
  public:
-  explicit HandleNullSpace(int joints) : joints_(joints) {}
+  explicit HandleNullSpace(int joints) : joints_(joints) {}  ///< at most kMaxArmJoints
 
   /// From the columns S of J about Do [joints]. Writes how the joints move, and returns the number
   /// of motions.

@@ -16,9 +16,9 @@ ArmDescription SarcosMasterArm();
 
 /// Joint of the thumb that closes the gripper: range [rad] and full-scale torque [N m].
 struct GripperRange {
-  double closed = 0;
-  double open = 0.814321;
-  double torque_limit = 7.25;
+  double closed = 0;           ///< [rad]
+  double open = 0.814321;      ///< [rad]
+  double torque_limit = 7.25;  ///< full scale [N m]
 };
 
 }  // namespace vmech

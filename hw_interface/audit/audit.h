@@ -11,11 +11,12 @@ namespace vmech {
 
 /// One thing that an audit looked at in every tick.
 struct AuditFinding {
-  std::string what;
-  double worst = 0;                              ///< of all ticks
-  double bound = 0;                              ///< up to which it is sound
-  std::string unit;                              ///< "-" for shares
-  std::uint64_t tick = 0;                        ///< of the worst, counted from 0
+  std::string what;        ///< a few words for the report
+  double worst = 0;        ///< of all ticks
+  double bound = 0;        ///< up to which it is sound
+  std::string unit;        ///< "-" for shares
+  std::uint64_t tick = 0;  ///< of the worst, counted from 0
+  /// Within the bound.
   bool sound() const { return worst <= bound; }  // not for a number that is none
 };
 
@@ -35,12 +36,12 @@ struct EnergyBalance {
 
 /// What an audit of a recording found.
 struct AuditReport {
-  std::uint64_t ticks = 0;
-  std::vector<AuditFinding> findings;
-  EnergyBalance energy;
-  std::string left_out;  ///< what could not be judged and why; may be empty
+  std::uint64_t ticks = 0;             ///< that were looked at
+  std::vector<AuditFinding> findings;  ///< in the order of the report
+  EnergyBalance energy;                ///< since the hand took hold
+  std::string left_out;                ///< what could not be judged and why; may be empty
 
-  bool sound() const;
+  bool sound() const;           ///< every finding is
   std::string Verdict() const;  ///< a sentence
   std::string Text() const;     ///< lines with figures, and the verdict
 };
@@ -56,8 +57,8 @@ class RecordingAudit : public TickListener {
   explicit RecordingAudit(const RecordingHeader& header);
   ~RecordingAudit() override;
 
-  void Take(const TickRecord& tick) override;
-  AuditReport Report() const;
+  void Take(const TickRecord& tick) override;  ///< the next tick of the recording
+  AuditReport Report() const;                  ///< on all ticks so far
 
   // After a tick.
   bool started() const;                 ///< a hand has had the mechanism

@@ -27,8 +27,8 @@ class FeltFit : public TickListener {
   FeltFit(const RecordingHeader& header, const RecordedTree& held);
   ~FeltFit() override;
 
-  void Take(const TickRecord& tick) override;
-  FeltReport Report() const;
+  void Take(const TickRecord& tick) override;  ///< the next tick of the session
+  FeltReport Report() const;                   ///< on all ticks so far
 
  private:
   struct Parts;

@@ -16,13 +16,13 @@ struct RecordedTree {
   /// Of a session that runs here.
   RecordedTree(const KinematicTree& held, int index, bool gripper);
 
-  KinematicTree tree;
-  int grasp_index = -1;
-  GraspFrame grasp;
+  KinematicTree tree;    ///< whose q and v the ticks hold
+  int grasp_index = -1;  ///< index in the mechanism's grasps
+  GraspFrame grasp;      ///< on its link
   // Of every hand; the first is the one above.
-  std::vector<int> grasp_indices;
-  std::vector<GraspFrame> grasps;
-  bool regrasps = false;  ///< the hand lets go and takes hold elsewhere, as with a gripper
+  std::vector<int> grasp_indices;  ///< as grasp_index
+  std::vector<GraspFrame> grasps;  ///< as grasp
+  bool regrasps = false;           ///< the hand lets go and takes hold elsewhere, as with a gripper
 };
 
 /// What stands for a mechanism in the recordings of its sessions.

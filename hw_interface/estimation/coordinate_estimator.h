@@ -22,10 +22,10 @@ enum class EstimatorKind {
 
 /// What a coordinate estimator takes for given of the motion.
 struct EstimatorOptions {
-  EstimatorKind kind = EstimatorKind::kObserver;
-  double jerk_density = 1e2;          ///< kKalman, lengths [m^2/s^5], in [1e-6, 1e12]
-  double angular_jerk_density = 1e4;  ///< kKalman, angles [rad^2/s^5], in [1e-6, 1e12]
-  int window = 20;                    ///< kQuadraticFit and kAdaptiveWindow [samples], 3..64
+  EstimatorKind kind = EstimatorKind::kObserver;  ///< the filter
+  double jerk_density = 1e2;                      ///< kKalman, lengths [m^2/s^5], in [1e-6, 1e12]
+  double angular_jerk_density = 1e4;              ///< kKalman, angles [rad^2/s^5], in [1e-6, 1e12]
+  int window = 20;  ///< kQuadraticFit and kAdaptiveWindow [samples], 3..64
 };
 
 /// Velocities and accelerations of coordinates from their steps at a fixed period: an estimator for
@@ -34,20 +34,20 @@ class CoordinateEstimator {
  public:
   /// A length or an angle, and the step in which it is known [m] or [rad], > 0.
   struct Coordinate {
-    bool is_angle;
-    double resolution;
+    bool is_angle;      ///< counted in [rad], not [m]
+    double resolution;  ///< step of the encoder [m] or [rad]
   };
   /// @throws std::invalid_argument as the estimators.
   CoordinateEstimator(const EstimatorOptions& options, double period,
                       const std::vector<Coordinate>& coordinates);
 
-  void Reset() noexcept;
+  void Reset() noexcept;  ///< the next sample is the first
   /// The displacement [size] in the last `periods` periods, 1 or more, taken to be even; zero for
   /// the first sample.
   void Update(const VectorXd& step, int periods) noexcept;
 
-  const VectorXd& v() const noexcept { return v_; }
-  const VectorXd& a() const noexcept { return a_; }
+  const VectorXd& v() const noexcept { return v_; }  ///< [size] velocities [m/s, rad/s]
+  const VectorXd& a() const noexcept { return a_; }  ///< [size] accelerations [m/s^2, rad/s^2]
 
  private:
   using Estimator =

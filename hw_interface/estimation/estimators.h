@@ -11,7 +11,7 @@ namespace vmech {
 /// estimators_test.cc.
 template <typename Coordinate>
 struct MotionEstimateOf {
-  Coordinate x{}, v{}, a{};
+  Coordinate x{}, v{}, a{};  ///< coordinate, velocity, acceleration
 };
 /// Of a single coordinate.
 using MotionEstimate = MotionEstimateOf<double>;
@@ -20,9 +20,9 @@ using MotionEstimate = MotionEstimateOf<double>;
 /// acceleration of D/T^2.
 class FiniteDifferences {
  public:
-  explicit FiniteDifferences(double period);
-  void Reset() noexcept { started_ = false; }
-  MotionEstimate Update(double x) noexcept;
+  explicit FiniteDifferences(double period);   ///< T of the samples [s], > 0
+  void Reset() noexcept { started_ = false; }  ///< the next sample is the first
+  MotionEstimate Update(double x) noexcept;    ///< a sample [m] or [rad]
 
  private:
   double rate_;
@@ -49,7 +49,8 @@ class KalmanEstimator {
   /// As KalmanGains.
   KalmanEstimator(double period, double resolution, double jerk_density = 1e4)
       : period_(period), gain_(KalmanGains(period, resolution, jerk_density)) {}
-  void Reset() noexcept { started_ = false; }
+  void Reset() noexcept { started_ = false; }  ///< the next sample is the first
+  /// A sample [m] or [rad].
   const MotionEstimateOf<Coordinate>& Update(const Coordinate& x) noexcept {
     if (!started_) {
       started_ = true;
@@ -75,11 +76,11 @@ class KalmanEstimator {
 /// three fixed filters of n coefficients.
 class QuadraticFit {
  public:
-  static constexpr int kMaxWindow = 64;
+  static constexpr int kMaxWindow = 64;  ///< samples
   /// `window` samples, 3..64; 20 at 1 kHz. Longer is smoother and lags more.
   QuadraticFit(double period, int window);
-  void Reset() noexcept { count_ = 0; }
-  MotionEstimate Update(double x) noexcept;
+  void Reset() noexcept { count_ = 0; }      ///< the next sample is the first
+  MotionEstimate Update(double x) noexcept;  ///< a sample [m] or [rad]
 
  private:
   int window_;
@@ -93,11 +94,11 @@ class QuadraticFit {
 /// fast motion, long in slow: velocity for damping terms. Its acceleration is always zero.
 class AdaptiveWindow {
  public:
-  static constexpr int kMaxWindow = 64;
+  static constexpr int kMaxWindow = 64;  ///< samples
   /// `noise`: largest error of a sample, half an encoder step; > 0. `window` samples, 2..64.
   AdaptiveWindow(double period, double noise, int window = 16);
-  void Reset() noexcept { count_ = 0; }
-  MotionEstimate Update(double x) noexcept;
+  void Reset() noexcept { count_ = 0; }      ///< the next sample is the first
+  MotionEstimate Update(double x) noexcept;  ///< a sample [m] or [rad]
 
  private:
   double Sample(int age) const noexcept { return samples_[(newest_ - age) & (kMaxWindow - 1)]; }

@@ -40,7 +40,7 @@ class HandObserver {
   /// @throws std::invalid_argument as Validate, or if the device does not suit.
   HandObserver(const HandObserverOptions& options, const DeviceInfo& info);
 
-  void Reset() noexcept { started_ = false; }
+  void Reset() noexcept { started_ = false; }  ///< the next sample is the first
   /// A fresh sample, `periods` after the last, 1 or more.
   void Update(const MasterState& state, const Vector6d& F_Ho_D, int periods) noexcept;
 

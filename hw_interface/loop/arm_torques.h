@@ -35,7 +35,7 @@ class ArmTorques {
   ArmTorques(const PostureOptions& options, std::shared_ptr<const ArmDescription> arm,
              double period, double resolution);
 
-  void Reset() noexcept;
+  void Reset() noexcept;  ///< the next sample is the first
   /// Writes `torque` of the command from its F_Ho_D at measured angles; `fresh` as in TickInput.
   void Resolve(const MasterState& state, bool fresh,
                MasterCommand* command) noexcept VMECH_NONBLOCKING;

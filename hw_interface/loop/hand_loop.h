@@ -45,6 +45,7 @@ class HandLoop {
   /// `master` must be configured and outlive this. @throws std::invalid_argument as SafetyFilter.
   HandLoop(const HandLoopOptions& options, Master* master);
 
+  /// The device, in the slot that begins at `slot_ns`.
   void Read(std::int64_t slot_ns, bool emergency_stop, HandRecord* record) noexcept;
   /// A sample has come, now or before: the device is laid over the mechanism.
   bool registered() const noexcept { return registered_; }

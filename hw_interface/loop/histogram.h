@@ -9,11 +9,11 @@ namespace vmech {
 /// percentile is right within an eighth. Fixed size, adding costs a few instructions.
 class Histogram {
  public:
-  void Add(std::int64_t ns) noexcept;
+  void Add(std::int64_t ns) noexcept;  ///< a duration [ns], >= 0
 
-  std::uint64_t count() const noexcept { return count_; }
-  std::int64_t max() const noexcept { return max_; }  ///< exact [ns]
-  double mean() const noexcept;                       ///< exact [ns]
+  std::uint64_t count() const noexcept { return count_; }  ///< durations so far
+  std::int64_t max() const noexcept { return max_; }       ///< exact [ns]
+  double mean() const noexcept;                            ///< exact [ns]
   /// The smallest bucket's upper end [ns] below which a share of all durations lies; 0 if empty.
   std::int64_t Percentile(double share) const noexcept;
 

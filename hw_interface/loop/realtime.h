@@ -20,7 +20,7 @@ struct RealtimeOptions {
 
 /// What the machine granted. A timing figure means nothing without it.
 struct RealtimeReport {
-  bool memory_locked = false;
+  bool memory_locked = false;        ///< no page of it is swapped out
   bool fifo = false;                 ///< SCHED_FIFO
   bool preempt_rt = false;           ///< the kernel is a real-time one
   bool flush_to_zero = false;        ///< numbers below 2.2e-308 count as zero, and cost nothing
@@ -40,7 +40,7 @@ class RealtimeScope {
   RealtimeScope(const RealtimeScope&) = delete;
   RealtimeScope& operator=(const RealtimeScope&) = delete;
 
-  const RealtimeReport& report() const noexcept { return report_; }
+  const RealtimeReport& report() const noexcept { return report_; }  ///< of the constructor
 
  private:
   void LockMemory();

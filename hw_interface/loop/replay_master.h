@@ -22,7 +22,7 @@ class ReplayMaster : public Master {
 
   const MovingFrame* ObservedHand() const noexcept override;
   WrenchLimit Room() const noexcept override { return room_; }
-  bool finished() const noexcept { return next_ == recording_.ticks.size(); }
+  bool finished() const noexcept { return next_ == recording_.ticks.size(); }  ///< no tick is left
 
  private:
   DeviceInfo OnConfigure() override;

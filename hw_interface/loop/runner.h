@@ -31,9 +31,9 @@ struct RunnerOptions {
   bool gripper = false;  ///< hold only while the gripper is closed, where the device senses it
   bool joint_torques = true;             ///< where the device takes them; else wrenches
   Matrix3d R_WD = Matrix3d::Identity();  ///< the device's axes in the mechanism's world
-  SafetyOptions safety;
-  HandObserverOptions observer;  ///< where the device is an arm that states itself
-  PostureOptions posture;
+  SafetyOptions safety;                  ///< what the motors may be asked for
+  HandObserverOptions observer;          ///< where the device is an arm that states itself
+  PostureOptions posture;                ///< of an arm whose joints are driven
   std::optional<RealtimeOptions> realtime = RealtimeOptions{};  ///< none: an ordinary thread
 
   /// @throws std::invalid_argument naming field, value and range.
@@ -50,34 +50,34 @@ enum class RunStatus : std::uint8_t {
 
 /// What came of a run; every figure was measured here. Of several hands the first is the summary's.
 struct RunSummary : HandSummary {
-  RunStatus status = RunStatus::kNotRun;
-  double period = 0;  ///< [s]
-  std::uint64_t ticks = 0;
-  std::uint64_t skipped = 0;          ///< slots that passed while the loop was late
-  std::uint64_t held = 0;             ///< ticks in which the mechanism could not follow
-  Histogram late, interval, compute;  ///< [ns]; `interval` from wake-up to wake-up
-  std::vector<HandSummary> others;    ///< hands beside the first
-  RealtimeReport realtime;
-  std::filesystem::path post_mortem;  ///< what was written after a fault
+  RunStatus status = RunStatus::kNotRun;  ///< why it ended
+  double period = 0;                      ///< [s]
+  std::uint64_t ticks = 0;                ///< steps of the mechanism
+  std::uint64_t skipped = 0;              ///< slots that passed while the loop was late
+  std::uint64_t held = 0;                 ///< ticks in which the mechanism could not follow
+  Histogram late, interval, compute;      ///< [ns]; `interval` from wake-up to wake-up
+  std::vector<HandSummary> others;        ///< hands beside the first
+  RealtimeReport realtime;                ///< memory, scheduling
+  std::filesystem::path post_mortem;      ///< what was written after a fault
 
-  std::string BriefReport() const;
-  std::string FullReport() const;
+  std::string BriefReport() const;  ///< a line
+  std::string FullReport() const;   ///< lines with every figure
 };
 
 /// One of several hands on a mechanism.
 struct RunnerHand {
-  Master* master = nullptr;  ///< configured
-  SafetyOptions safety;
-  HandObserverOptions observer;
+  Master* master = nullptr;      ///< configured
+  SafetyOptions safety;          ///< what its motors may be asked for
+  HandObserverOptions observer;  ///< where it is an arm that states itself
 };
 
 /// The newest figures of a running loop and its first hand, for other threads.
 struct LiveStatus {
-  std::atomic<std::uint64_t> ticks = 0, skipped = 0;
-  std::atomic<double> force = 0;   ///< sent [N]
-  std::atomic<double> energy = 0;  ///< [J]
-  std::atomic<std::int64_t> compute_ns = 0;
-  std::atomic<ForceOff> off = ForceOff::kNotActive;
+  std::atomic<std::uint64_t> ticks = 0, skipped = 0;  ///< as in RunSummary
+  std::atomic<double> force = 0;                      ///< sent [N]
+  std::atomic<double> energy = 0;                     ///< [J]
+  std::atomic<std::int64_t> compute_ns = 0;           ///< of the last tick [ns]
+  std::atomic<ForceOff> off = ForceOff::kNotActive;   ///< why no force is sent
 };
 
 /// The loop around a tick: sleep until the slot, read, step, filter, write. Slots lie on a grid of
@@ -104,8 +104,8 @@ class Runner {
   /// The same, and counts as a fault.
   void EmergencyStop() noexcept { emergency_stop_ = true; }
 
-  const LiveStatus& live() const noexcept { return live_; }
-  double period() const noexcept { return period_; }  ///< [s]
+  const LiveStatus& live() const noexcept { return live_; }  ///< may be read from any thread
+  double period() const noexcept { return period_; }         ///< [s]
   /// The ticks that were kept, oldest first.
   Recording Kept() const;
   /// What every recording of this run begins with.

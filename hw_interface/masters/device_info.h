@@ -35,7 +35,7 @@ struct HandlePhysics {
 /// What a master states about its own physics; from it the bounds of stable gains are computed
 /// (stability.h).
 struct DeviceInfo {
-  std::string name;
+  std::string name;               ///< maker and model, for reports
   double period = 1e-3;           ///< T, between two samples [s]
   double delay = 0;               ///< from a command to its torque, beyond the sampling [s]
   std::uint32_t senses = 0;       ///< bits of Sense

@@ -40,9 +40,9 @@ struct MasterState {
   std::int64_t device_time_ns = 0;  ///< the device's clock at the sample
   std::int64_t host_time_ns = 0;    ///< the caller's clock at the read
   std::uint32_t valid = 0;          ///< bits of Sense
-  std::uint32_t buttons = 0;
-  bool dead_man = false;        ///< held by the hand; true where there is no such switch
-  bool emergency_stop = false;  ///< pressed
+  std::uint32_t buttons = 0;        ///< bit by bit, pressed
+  bool dead_man = false;            ///< held by the hand; true where there is no such switch
+  bool emergency_stop = false;      ///< pressed
   /// Sequence of the command at work during the period before this sample; 0 if there was none.
   std::uint64_t command_echo = 0;
   Posed X_DH;                        ///< measured pose of the handle
@@ -55,8 +55,8 @@ struct MasterState {
 
 /// What the motors are to do until the next command.
 struct MasterCommand {
-  std::uint64_t sequence = 0;
-  CommandMode mode = CommandMode::kZero;
+  std::uint64_t sequence = 0;             ///< grows by one per command
+  CommandMode mode = CommandMode::kZero;  ///< which of the following counts
   /// The device goes to zero by itself after this time of the host's clock.
   std::int64_t valid_until_ns = std::numeric_limits<std::int64_t>::max();
   Vector6d F_Ho_D = Vector6d::Zero();  ///< kWrench; with kJointTorque: what the torques amount to
@@ -82,15 +82,16 @@ class Master {
   /// Opens the link and asks the device what it is. @throws std::runtime_error if it cannot be had,
   /// std::logic_error if its physics is impossible or the life cycle forbids it (so do the others).
   void Configure();
-  void Activate();
-  void Deactivate() noexcept;
-  void Recover();
-  void Shutdown() noexcept;
+  void Activate();             ///< motors on; the force is zero until the first Write
+  void Deactivate() noexcept;  ///< motors off
+  void Recover();              ///< from a fault back to inactive
+  void Shutdown() noexcept;    ///< motors off, link closed; from any state
 
   /// The newest sample at time `now_ns` of the caller's monotonic clock. A simulated master
   /// advances its simulation to it. A sample without a pose, or without the joints of a device that
   /// senses them, is no new data: its switches count, everything else stays that of the last read.
   [[nodiscard]] IoStatus Read(std::int64_t now_ns, MasterState* state) noexcept;
+  /// Until its valid_until_ns.
   [[nodiscard]] IoStatus Write(const MasterCommand& command) noexcept;
 
   /// The hand in D in the last sample, where that is known better than the sample tells: by a
@@ -100,7 +101,7 @@ class Master {
   /// recording; no limit otherwise.
   virtual WrenchLimit Room() const noexcept { return {}; }
 
-  Lifecycle lifecycle() const noexcept { return lifecycle_; }
+  Lifecycle lifecycle() const noexcept { return lifecycle_; }  ///< which calls are allowed now
   /// Valid from Configure on.
   const DeviceInfo& info() const noexcept { return info_; }
 

@@ -9,8 +9,8 @@ namespace vmech {
 /// Where a simulated hand wants to be: the pose X_DT of its target and its twist V_DT = [v; w] at
 /// To, axes of D.
 struct HandTargetMotion {
-  Posed X_DT;
-  Vector6d V_DT = Vector6d::Zero();
+  Posed X_DT;                        ///< target frame in the device's base
+  Vector6d V_DT = Vector6d::Zero();  ///< [m/s, rad/s]
 };
 /// A target over time [s]. Called in the simulation's steps: it must not throw or allocate.
 using HandMotion = std::function<HandTargetMotion(double time)>;

@@ -19,37 +19,37 @@ extern "C" {
 
 /* See HandlePhysics in device_info.h; zero is unknown. */
 typedef struct {
-  double mass, damping, coulomb, resolution, peak, max_speed;
+  double mass, damping, coulomb, resolution, peak, max_speed; /* kg, m, s, N; of rotations rad */
 } vmech_plugin_physics;
 
 /* What the device states of itself. */
 typedef struct {
-  char name[64];
-  double period; /* [s], > 0 */
-  double delay;  /* [s] */
-  int32_t senses_twist, senses_gripper, senses_wrench, has_dead_man;
-  vmech_plugin_physics linear, angular;
+  char name[64];                                                     /* for reports, ends with 0 */
+  double period;                                                     /* [s], > 0 */
+  double delay;                                                      /* [s] */
+  int32_t senses_twist, senses_gripper, senses_wrench, has_dead_man; /* 1: the state has it */
+  vmech_plugin_physics linear, angular; /* of positions; of rotations */
 } vmech_plugin_info;
 
 /* What the device senses, at a time of its own clock. */
 typedef struct {
-  uint64_t sequence;
-  int64_t device_time_ns;
-  uint32_t buttons;
-  int32_t dead_man, emergency_stop;
-  double position[3];
-  double rotation[9]; /* row after row, R_DH */
-  double twist[6];
-  double applied_wrench[6];
-  double gripper_opening; /* [rad] */
+  uint64_t sequence;                /* grows by one per sample */
+  int64_t device_time_ns;           /* of the device's clock */
+  uint32_t buttons;                 /* bit by bit, pressed */
+  int32_t dead_man, emergency_stop; /* 1: held; 1: pressed */
+  double position[3];               /* of Ho in D [m] */
+  double rotation[9];               /* row after row, R_DH */
+  double twist[6];                  /* [v; w] of Ho, axes of D [m/s, rad/s] */
+  double applied_wrench[6];         /* of the handle on the hand at Ho, axes of D [N, N m] */
+  double gripper_opening;           /* [rad] */
 } vmech_plugin_state;
 
 /* What the device is to exert, and until when. */
 typedef struct {
-  uint64_t sequence;
+  uint64_t sequence;      /* grows by one per command */
   int64_t valid_until_ns; /* of the clock whose time `read` is given */
   double wrench[6];       /* all zero: motors off */
-  double gripper_torque;
+  double gripper_torque;  /* [N m], positive opens */
 } vmech_plugin_command;
 
 /* What read returns. */
@@ -62,15 +62,19 @@ enum {
 
 /* configure, activate and recover return 0, or write what is wrong into error [error_size]. */
 typedef struct {
-  uint32_t version;
-  void* device;
+  uint32_t version; /* VMECH_PLUGIN_VERSION */
+  void* device;     /* whatever the plug-in likes; the functions are given it */
+  /* Opens the link and fills `info`. */
   int (*configure)(void* device, vmech_plugin_info* info, char* error, size_t error_size);
-  int (*activate)(void* device, char* error, size_t error_size);
-  void (*deactivate)(void* device);
+  int (*activate)(void* device, char* error, size_t error_size); /* motors on */
+  void (*deactivate)(void* device);                              /* motors off */
+  /* Back from a fault, motors off. */
   int (*recover)(void* device, char* error, size_t error_size);
+  /* The newest sample, without waiting for one. */
   int (*read)(void* device, int64_t now_ns, vmech_plugin_state* state);
+  /* Takes the newest command, without waiting. */
   void (*write)(void* device, const vmech_plugin_command* command);
-  void (*destroy)(void* device);
+  void (*destroy)(void* device); /* closes the link and frees the device */
 } vmech_plugin;
 
 /* Exported by the plug-in. `parameters` is the text that the user gave for it. */

@@ -19,7 +19,7 @@ struct SimulatedMasterOptions {
   bool compensates_gravity = true;  ///< the device carries its own weight, from measured angles
   double stop_stiffness = 300;      ///< of the joints' end stops [N m/rad], > 0
   double stop_damping = 3;          ///< of the same [N m s/rad], >= 0
-  OperatorImpedance hand = ImpedanceOf(Grip::kRelaxed);
+  OperatorImpedance hand = ImpedanceOf(Grip::kRelaxed);  ///< stiffness and damping of the operator
   HandMotion motion;  ///< of the operator's target; none: stays where the handle starts
   /// Moment that the operator closes the gripper with, at a time [s]; none: zero.
   std::function<double(double time)> squeeze;
@@ -37,20 +37,21 @@ struct SimulatedMasterOptions {
 /// whole periods up to `now_ns`, at most kMaxCatchUp of them. Same options, same calls: same bits.
 class SimulatedMaster : public Master {
  public:
-  static constexpr int kMaxCatchUp = 100;
+  static constexpr int kMaxCatchUp = 100;  ///< periods that one Read makes up for
 
-  explicit SimulatedMaster(const SimulatedMasterOptions& options = {});
-  SimulatedMaster(SimulatedMasterOptions options, ArmDescription arm);
+  explicit SimulatedMaster(const SimulatedMasterOptions& options = {});  ///< of SarcosMasterArm
+  SimulatedMaster(SimulatedMasterOptions options, ArmDescription arm);   ///< of another arm
   ~SimulatedMaster() override { Shutdown(); }
 
   /// The true state, which a real master would not show.
   const VectorXd& q() const noexcept { return q_; }
-  const VectorXd& v() const noexcept { return v_; }
-  double time() const noexcept { return time_; }  ///< simulated [s]
+  const VectorXd& v() const noexcept { return v_; }  ///< [joints] [rad/s]
+  double time() const noexcept { return time_; }     ///< simulated [s]
   /// Kinetic energy of the arm with the hand's mass, potential energy of the arm [J].
   double Energy() noexcept;
   /// Presses or releases what a real device has as switches.
   void SetDeadMan(bool held) noexcept { dead_man_ = held; }
+  /// A switch of the device.
   void SetEmergencyStop(bool pressed) noexcept { emergency_stop_ = pressed; }
 
  private:

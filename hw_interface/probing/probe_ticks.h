@@ -19,17 +19,18 @@ SafetyOptions ProbeSafety(double force, double speed);
 /// A spring and a damper from the handle to a point.
 class HandleSpring {
  public:
+  /// `stiffness` [N/m], `damping` [N s/m], `period` of the samples [s].
   HandleSpring(double stiffness, double damping, double period)
       : stiffness_(stiffness), damping_(damping), period_(period) {}
 
-  void Reset() noexcept { has_pose_ = false; }
+  void Reset() noexcept { has_pose_ = false; }  ///< the next sample is the first
   /// Takes a sample, `elapsed` [s] after the last.
   void Update(const Vector3d& p, double elapsed) noexcept;
   /// Pull towards `target` [m].
   Vector3d Pull(const Vector3d& target) const noexcept {
     return stiffness_ * (target - p_) - damping_ * v_;
   }
-  const Vector3d& p() const noexcept { return p_; }
+  const Vector3d& p() const noexcept { return p_; }  ///< of the last sample [m]
   const Vector3d& v() const noexcept { return v_; }  ///< smoothed over 5 ms
 
  private:
@@ -50,7 +51,7 @@ struct ShakeOptions {
 
   /// @throws std::invalid_argument naming field, value and range.
   void Validate() const;
-  double total_seconds() const noexcept;
+  double total_seconds() const noexcept;  ///< shaking and blows together [s]
 };
 
 /// Shakes the handle along x, y and z, one after the other, by five sines from 0.9 to 8.9 Hz whose

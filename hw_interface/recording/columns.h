@@ -31,9 +31,11 @@ const ValueNames& StageNames();
 template <typename Visitor, typename Tick>
 class ColumnVisit {
  public:
+  /// `tick` has the shape that the header says.
   ColumnVisit(const RecordingHeader& header, Visitor* visit, Tick* tick)
       : header_(header), visit_(*visit), tick_(*tick) {}
 
+  /// Calls `visit` with every column's name and number, in the order of a row.
   void All() {
     Sample(tick_);
     Loop(tick_);
@@ -211,8 +213,8 @@ void VisitColumns(const RecordingHeader& header, Visitor* visit, Tick* tick) {
 enum class CellKind { kNumber, kInteger, kFlag, kName };
 /// A column of a recording as text.
 struct Column {
-  std::string name;
-  CellKind kind;
+  std::string name;                   ///< unique in the header line
+  CellKind kind;                      ///< how its text is read
   const ValueNames* names = nullptr;  ///< of kName: what it may be
 };
 /// Of a recording: one per cell of a row. Refers to the header.

@@ -37,10 +37,10 @@ std::uint32_t Crc32(std::uint32_t crc, std::string_view bytes) noexcept;
 /// Content of a record, field by field.
 class McapFields {
  public:
-  McapFields& U8(std::uint8_t value) { return Number(value, 1); }
-  McapFields& U16(std::uint16_t value) { return Number(value, 2); }
-  McapFields& U32(std::uint32_t value) { return Number(value, 4); }
-  McapFields& U64(std::uint64_t value) { return Number(value, 8); }
+  McapFields& U8(std::uint8_t value) { return Number(value, 1); }    ///< little end first
+  McapFields& U16(std::uint16_t value) { return Number(value, 2); }  ///< little end first
+  McapFields& U32(std::uint32_t value) { return Number(value, 4); }  ///< little end first
+  McapFields& U64(std::uint64_t value) { return Number(value, 8); }  ///< little end first
   /// Behind its length as four bytes: strings, maps, arrays, schemas.
   McapFields& Text(std::string_view text) {
     U32(static_cast<std::uint32_t>(text.size()));
@@ -51,11 +51,12 @@ class McapFields {
     U64(bytes.size());
     return Raw(bytes);
   }
+  /// Without a length.
   McapFields& Raw(std::string_view bytes) {
     bytes_ += bytes;
     return *this;
   }
-  const std::string& bytes() const { return bytes_; }
+  const std::string& bytes() const { return bytes_; }  ///< what was written so far
 
  private:
   McapFields& Number(std::uint64_t value, int size) {
@@ -71,17 +72,17 @@ std::string McapRecord(McapOpcode opcode, std::string_view content);
 /// Reads content field by field. @throws std::runtime_error where it ends too early.
 class McapCursor {
  public:
-  explicit McapCursor(std::string_view bytes) : rest_(bytes) {}
+  explicit McapCursor(std::string_view bytes) : rest_(bytes) {}  ///< a view: they must outlive it
 
-  std::uint8_t U8() { return static_cast<std::uint8_t>(Number(1)); }
-  std::uint16_t U16() { return static_cast<std::uint16_t>(Number(2)); }
-  std::uint32_t U32() { return static_cast<std::uint32_t>(Number(4)); }
-  std::uint64_t U64() { return Number(8); }
-  std::string_view Text() { return Take(U32()); }
-  std::string_view Bytes() { return Take(U64()); }
-  std::string_view Take(std::uint64_t size);
-  std::string_view rest() const { return rest_; }
-  bool done() const { return rest_.empty(); }
+  std::uint8_t U8() { return static_cast<std::uint8_t>(Number(1)); }     ///< little end first
+  std::uint16_t U16() { return static_cast<std::uint16_t>(Number(2)); }  ///< little end first
+  std::uint32_t U32() { return static_cast<std::uint32_t>(Number(4)); }  ///< little end first
+  std::uint64_t U64() { return Number(8); }                              ///< little end first
+  std::string_view Text() { return Take(U32()); }   ///< behind a length of four bytes
+  std::string_view Bytes() { return Take(U64()); }  ///< behind a length of eight bytes
+  std::string_view Take(std::uint64_t size);        ///< that many bytes
+  std::string_view rest() const { return rest_; }   ///< not read yet
+  bool done() const { return rest_.empty(); }       ///< nothing is left
 
  private:
   std::uint64_t Number(int size);

@@ -21,10 +21,10 @@ namespace vmech {
 /// Of every chunk some 100 bytes of index are kept until the end.
 class McapWriter : public RecordingWriter {
  public:
-  explicit McapWriter(RecordingHeader header);
+  explicit McapWriter(RecordingHeader header);  ///< of the whole recording
 
   void Begin(std::string* bytes) override;
-  void Add(const TickRecord& tick, std::string* bytes) override;
+  void Add(const TickRecord& tick, std::string* bytes) override;  ///< into the chunk that is open
   void Flush(std::string* bytes) override;
   std::uint64_t whole() const override { return whole_; }
   void End(std::uint64_t lost, std::string* bytes) override;

@@ -32,6 +32,7 @@ class RecordRing {
     if (taken == put_.load(std::memory_order_acquire)) return nullptr;
     return &records_[taken & (records_.size() - 1)];
   }
+  /// Gives the record of Oldest back. Of the thread that takes.
   void Drop() noexcept {
     taken_.store(taken_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
   }

@@ -17,8 +17,8 @@ struct RecordedHand {
   Posed X_DH;                        ///< the handle in the device
   Vector6d V_DH = Vector6d::Zero();  ///< [v; w] of Ho and H, axes of D
 
-  static RecordedHand Of(const MovingFrame& hand_D) noexcept;
-  MovingFrame Moving() const noexcept;
+  static RecordedHand Of(const MovingFrame& hand_D) noexcept;  ///< as it is recorded
+  MovingFrame Moving() const noexcept;                         ///< as ticks take it
 };
 
 /// A hand in one tick of a haptic loop.
@@ -47,7 +47,9 @@ struct TickRecord : HandRecord {
   std::vector<double> channels;    ///< of the tick, named in the recording
   std::vector<HandRecord> others;  ///< hands beside the first
 
+  /// Counted from 0, in [0, header.hands()).
   HandRecord& of_hand(int i) noexcept { return i == 0 ? *this : others[i - 1]; }
+  /// Counted from 0, in [0, header.hands()).
   const HandRecord& of_hand(int i) const noexcept { return i == 0 ? *this : others[i - 1]; }
 };
 
@@ -58,7 +60,7 @@ using RecordingNotes = std::vector<std::pair<std::string, std::string>>;
 struct RecordedMechanism {
   std::string text;  ///< a mechanism file (WriteMechanism); empty: not known
   // Names of its numbers in every tick; empty: they are numbered.
-  std::vector<std::string> coordinates, velocities, joints;
+  std::vector<std::string> coordinates, velocities, joints;  ///< names of q [nq], v [nv], joints
 };
 
 /// The format that is written; format 1 is read too.
@@ -66,9 +68,9 @@ inline constexpr int kRecordingFormat = 2;
 
 /// The device of a recorded hand.
 struct RecordedDevice {
-  std::string device;
-  double delay = 0;  ///< [s]
-  HandlePhysics linear, angular;
+  std::string device;             ///< DeviceInfo::name
+  double delay = 0;               ///< [s]
+  HandlePhysics linear, angular;  ///< as DeviceInfo's
 };
 
 /// What a recording says of all of its ticks; of several hands, the device of the first is here.
@@ -76,16 +78,16 @@ struct RecordingHeader : RecordedDevice {
   double period = 1e-3;                ///< [s]
   std::vector<RecordedDevice> others;  ///< of hands beside the first
   std::vector<std::string> channels;   ///< names of a tick's
-  RecordingNotes notes;
-  RecordedMechanism mechanism;
-  std::vector<std::string> states;  ///< names of the values of the channel "state"; or none
-  int format = kRecordingFormat;
+  RecordingNotes notes;                ///< of the session
+  RecordedMechanism mechanism;         ///< empty in format 1
+  std::vector<std::string> states;     ///< names of the values of the channel "state"; or none
+  int format = kRecordingFormat;       ///< of the file that it was read from
 
   /// Of the first note with the wanted key; empty if there is none.
   std::string Note(std::string_view wanted) const;
   /// A note that is a number; a value of its own where there is none.
   double Number(std::string_view wanted, double otherwise) const;
-  int hands() const { return static_cast<int>(others.size()) + 1; }
+  int hands() const { return static_cast<int>(others.size()) + 1; }  ///< at least 1
   /// The key of a note about a hand, counted from 0: "grasp", "grasp_2", ..
   static std::string KeyOf(std::string_view key, int hand);
   /// A record with everything sized as the names say.
@@ -94,9 +96,9 @@ struct RecordingHeader : RecordedDevice {
 
 /// A recorded session.
 struct Recording : RecordingHeader {
-  std::vector<TickRecord> ticks;
-  bool complete = true;    ///< false: it ends without its last line, as after a kill
-  std::uint64_t lost = 0;  ///< ticks that are not in it, since the disk was too slow
+  std::vector<TickRecord> ticks;  ///< in their order
+  bool complete = true;           ///< false: it ends without its last line, as after a kill
+  std::uint64_t lost = 0;         ///< ticks that are not in it, since the disk was too slow
 };
 
 }  // namespace vmech

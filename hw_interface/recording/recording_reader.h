@@ -18,7 +18,7 @@ class RecordingReader {
   explicit RecordingReader(const std::filesystem::path& file);
   ~RecordingReader();
 
-  const RecordingHeader& header() const { return header_; }
+  const RecordingHeader& header() const { return header_; }  ///< valid from the constructor on
   /// The next tick into one that is an EmptyTick of the header. False: there are no more.
   bool Next(TickRecord* tick);
 

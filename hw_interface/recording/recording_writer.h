@@ -14,6 +14,7 @@ class RecordingWriter {
   virtual ~RecordingWriter() = default;
   /// Once, first.
   virtual void Begin(std::string* bytes) = 0;
+  /// Bytes that are whole are appended.
   virtual void Add(const TickRecord& tick, std::string* bytes) = 0;
   /// Whatever was added is whole in the bytes: of a file that ends here nothing is lost.
   virtual void Flush(std::string* bytes) = 0;

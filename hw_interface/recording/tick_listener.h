@@ -8,6 +8,7 @@ namespace vmech {
 class TickListener {
  public:
   virtual ~TickListener() = default;
+  /// The tick is the caller's, valid during the call.
   virtual void Take(const TickRecord& tick) = 0;
 };
 

@@ -34,7 +34,7 @@ class UdpMaster : public Master {
   explicit UdpMaster(UdpMasterOptions options);
   ~UdpMaster() override { Shutdown(); }
 
-  const LinkStatistics& statistics() const noexcept { return statistics_; }
+  const LinkStatistics& statistics() const noexcept { return statistics_; }  ///< since Configure
 
  private:
   DeviceInfo OnConfigure() override;

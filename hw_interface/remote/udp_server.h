@@ -43,9 +43,9 @@ class UdpServer {
   /// @throws what the device's Activate throws.
   void Step(std::int64_t now_ns);
 
-  int port() const noexcept { return socket_.port(); }
-  bool serves() const noexcept { return session_ != 0; }
-  const LinkStatistics& statistics() const noexcept { return statistics_; }
+  int port() const noexcept { return socket_.port(); }    ///< on which it listens
+  bool serves() const noexcept { return session_ != 0; }  ///< a host is connected
+  const LinkStatistics& statistics() const noexcept { return statistics_; }  ///< since it was made
   /// Why the device's own limits withhold the force for good; none if they do not.
   ForceOff tripped() const noexcept { return limits_.latched(); }
 

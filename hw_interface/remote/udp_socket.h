@@ -27,8 +27,9 @@ class UdpSocket {
   UdpSocket(const UdpSocket&) = delete;
   UdpSocket& operator=(const UdpSocket&) = delete;
 
-  int port() const noexcept { return port_; }
+  int port() const noexcept { return port_; }  ///< its own, as the system gave it
 
+  /// False if the system does not take it.
   bool Send(const UdpPacket& packet, const sockaddr_in& to) noexcept;
   /// The next datagram and its sender; nullopt if none waits. An empty span is one that was longer
   /// than any packet.

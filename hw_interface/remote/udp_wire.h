@@ -25,11 +25,11 @@ enum class PacketKind : std::uint16_t {
 
 /// What every packet between a host and a remote device begins with.
 struct PacketHeader {
-  PacketKind kind = PacketKind::kHello;
-  std::uint64_t session = 0;           ///< chosen by the host; a packet of another is not for us
-  std::uint64_t sequence = 0;          ///< of the sender, grows with each packet
-  std::int64_t sent_ns = 0;            ///< the sender's clock, never before its zero
-  std::int64_t reflected_sent_ns = 0;  ///< `sent_ns` of the newest packet from the other side
+  PacketKind kind = PacketKind::kHello;  ///< decides what follows
+  std::uint64_t session = 0;             ///< chosen by the host; a packet of another is not for us
+  std::uint64_t sequence = 0;            ///< of the sender, grows with each packet
+  std::int64_t sent_ns = 0;              ///< the sender's clock, never before its zero
+  std::int64_t reflected_sent_ns = 0;    ///< `sent_ns` of the newest packet from the other side
 };
 
 /// A command to a remote device.
@@ -41,11 +41,11 @@ struct RemoteCommand {
 
 /// Any packet; only the member of its kind is set.
 struct UdpPacket {
-  PacketHeader header;
-  DeviceInfo info;
-  MasterState state;
-  bool fault = false;  ///< with kState: the device has switched its motors off
-  RemoteCommand command;
+  PacketHeader header;    ///< of every packet
+  DeviceInfo info;        ///< with kInfo
+  MasterState state;      ///< with kState
+  bool fault = false;     ///< with kState: the device has switched its motors off
+  RemoteCommand command;  ///< with kCommand
 };
 
 /// [bytes]

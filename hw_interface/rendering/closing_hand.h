@@ -31,6 +31,7 @@ class ClosingHand {
   /// grasp frame and sets the hand. In the first step nothing pulls yet.
   void BeforeStep(const Posed& X_WH, const Vector6d& V_WH, int hand,
                   CoupledDynamics* dynamics) noexcept;
+  /// After that step: finds what it holds in the next.
   void AfterStep(CoupledStatus status, int hand, CoupledDynamics* dynamics) noexcept;
 
   /// Largest force that it holds in the next step [N].

@@ -15,12 +15,12 @@ enum class ContactKind {
 /// from the mechanism to the hand and its rate. Hunt and Crossley's law, with exponent 1, loses
 /// energy without the jump at e1 = 0 that a damper makes; for positions and rotations apart.
 struct ContactLaw {
-  ContactKind kind = ContactKind::kLinear;
-  Vector6d stiffness = Vector6d::Zero();  ///< K, diagonal [N/m], [N m/rad], >= 0
-  Vector6d damping = Vector6d::Zero();    ///< B of kViscoelastic, diagonal [N s/m], [N m s/rad]
+  ContactKind kind = ContactKind::kLinear;  ///< linear, viscoelastic or Hunt and Crossley's
+  Vector6d stiffness = Vector6d::Zero();    ///< K, diagonal [N/m], [N m/rad], >= 0
+  Vector6d damping = Vector6d::Zero();      ///< B of kViscoelastic, diagonal [N s/m], [N m s/rad]
   /// a of kHuntCrossley [s/m] and [s/rad], >= 0: 1.5 times what a metre a second costs in
   /// restitution.
-  double loss = 1, angular_loss = 0.1;
+  double loss = 1, angular_loss = 0.1;  ///< angular_loss of rotations
 
   /// w_c: what the mechanism's constraint does to itself by the hand, in the sense of e1.
   Vector6d Wrench(const Vector6d& e1, const Vector6d& rate) const noexcept;

@@ -41,14 +41,14 @@ HandCoupling AtTheMechanism(HandCoupling coupling, double scale);
 
 /// Ticks in which each thing happened since the hand took hold.
 struct CoupledSummary {
-  long ticks = 0;
+  long ticks = 0;            ///< all of them
   long at_limit = 0;         ///< a joint stood at a limit
   long slipping = 0;         ///< the coupling was at its largest wrench
   long stopped = 0;          ///< the loops did not close where the motion led; it stopped before
   double worst_closure = 0;  ///< [-], lengths over the characteristic length
   double farthest = 0;       ///< hand from grasp frame [m]
 
-  std::string BriefReport() const;
+  std::string BriefReport() const;  ///< a line
 };
 
 /// The second architecture: a mechanism that moves by its own dynamics, and between it and the hand
@@ -79,7 +79,9 @@ class CoupledTick : public Tick {
   TickOutput Step(const TickInput& input, std::span<double> channels) noexcept override;
 
   int hands() const noexcept override { return static_cast<int>(hands_.size()); }
+  /// Grasp frame in the world.
   Posed HeldFrame(int hand) const noexcept override { return dynamics_.X_WG(hand); }
+  /// Takes hold there, if it is near.
   bool HandGraspsAt(int hand, const Posed& X_WH) noexcept override;
   void StepHands(std::span<const TickInput> inputs, std::span<TickOutput> outputs,
                  std::span<double> channels) noexcept override;
@@ -91,8 +93,9 @@ class CoupledTick : public Tick {
   [[nodiscard]] DesignStatus ChangeDesign(const HeldDesign& from, const HeldDesign& to,
                                           const WrenchLimit& most) noexcept;
 
+  /// As the last step left them.
   const CoupledDynamics& dynamics() const noexcept { return dynamics_; }
-  const CoupledSummary& summary() const noexcept { return summary_; }
+  const CoupledSummary& summary() const noexcept { return summary_; }  ///< since the hand took hold
   /// Largest force of each joint since the hand took hold [N].
   const std::vector<double>& peak_forces() const noexcept { return peaks_.forces(); }
   std::string FullReport() const override;

@@ -26,22 +26,22 @@ struct MechanismTickOptions {
   /// falls where the pose makes the mechanism heavier. Raise it for a truer inertia, lower it for a
   /// device that hums. D = 0: no limit.
   double inertia_ratio = 1e6;
-  Vector6d handle_masses = Vector6d::Zero();
+  Vector6d handle_masses = Vector6d::Zero();  ///< D, diagonal [kg, kg m^2]
   /// Roll-off of the acceleration [s], in [0, 0.1]: longer renders heavier mechanisms with less
   /// noise, and lags by as much. For estimators that find velocities alone.
   double roll_off = 8e-3;
   /// A hand that is faster than this is braked [m/s], [rad/s], > 0: what falls out of a hand with
   /// little inertia of its own would be stopped by the safety filter.
   double max_speed = std::numeric_limits<double>::infinity();
-  double max_angular_speed = std::numeric_limits<double>::infinity();
+  double max_angular_speed = std::numeric_limits<double>::infinity();  ///< [rad/s], > 0
   /// Largest w_d as felt [N], [N m], > 0, those of the device: near a pose where the hand hardly
   /// moves the mechanism, what it takes has no bound.
   double max_force = std::numeric_limits<double>::infinity();
-  double max_moment = std::numeric_limits<double>::infinity();
+  double max_moment = std::numeric_limits<double>::infinity();  ///< [N m], > 0
   /// Fastest change of w_d [N/s], in [10, 1e7], and a tenth of it for moments [N m/s].
   double slew = 5e3;
-  EstimatorOptions estimator;
-  WrenchRule wrench = WrenchRule::kWorkless;
+  EstimatorOptions estimator;                 ///< of velocities and accelerations
+  WrenchRule wrench = WrenchRule::kWorkless;  ///< workless, or as the paper prints it
   /// Its stiffness is set from the law. Two steps: the next tick goes on from there.
   TrackOptions track;
 
@@ -87,8 +87,10 @@ class MechanismTick : public Tick {
 
   void Show(TickPicture* picture) const noexcept override;
 
+  /// [nq], the pose that follows the hand
   const VectorXd& q() const noexcept { return tracker_.q(); }
-  const HandDynamics& dynamics() const noexcept { return dynamics_; }
+  const HandDynamics& dynamics() const noexcept { return dynamics_; }  ///< of the last tick
+  /// Since the hand took hold.
   const TrackSummary& tracking() const noexcept { return tracker_.summary(); }
   double share() const noexcept { return share_; }  ///< s of the last tick
   /// Largest force of each joint since the hand took hold [N].

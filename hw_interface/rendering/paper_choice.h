@@ -11,16 +11,16 @@ struct PaperRequest {
   double scale = 0;      ///< force felt over the mechanism's own
   double stiffness = 0;  ///< of the constraint [N/m]
   double inertia = 0;    ///< share of the inertia, whatever the device can render
-  ContactKind contact = ContactKind::kLinear;
-  EstimatorKind estimator = EstimatorKind::kObserver;
-  WrenchRule wrench = WrenchRule::kWorkless;
+  ContactKind contact = ContactKind::kLinear;          ///< the law by which the constraint pulls
+  EstimatorKind estimator = EstimatorKind::kObserver;  ///< source of velocities and accelerations
+  WrenchRule wrench = WrenchRule::kWorkless;           ///< workless, or as the paper prints it
 };
 
 /// The paper's way of rendering for a device and a mechanism.
 struct PaperChoice {
-  MechanismTickOptions tick;
-  HandObserverOptions observer;
-  SafetyOptions safety;
+  MechanismTickOptions tick;           ///< gains that the device can render
+  HandObserverOptions observer;        ///< where the device is an arm
+  SafetyOptions safety;                ///< bounds of the device
   Vector6d weight = Vector6d::Zero();  ///< what keeps the mechanism here, not scaled [N, N m]
   double inertia_ratio = 0;            ///< of the mechanism over the handle here; 0: masses unknown
 };

@@ -13,11 +13,11 @@ namespace vmech {
 /// largest. No allocation after construction.
 class PeakForces {
  public:
-  explicit PeakForces(const Mechanism& mechanism);
+  explicit PeakForces(const Mechanism& mechanism);  ///< for its joints, in their order
 
   /// "force main", ... behind the names that are there already, as far as kMaxChannels allow.
   void AppendNames(std::vector<std::string>* names) const;
-  void Reset() noexcept;
+  void Reset() noexcept;  ///< all are zero
   /// The joints' wrenches of a tick; writes their forces [N] into as many channels as there are.
   void Add(const std::vector<Wrenchd>& joints, std::span<double> channels) noexcept;
 

@@ -10,10 +10,10 @@ namespace vmech {
 ///
 ///   X_WK = X_WD X_DH R_HK,   F_Ho_D = R_WD' F_Ko_W   (Ko = Ho)
 struct Registration {
-  Posed X_WD;
-  Matrix3d R_HK = Matrix3d::Identity();
+  Posed X_WD;                            ///< the device's base in the mechanism's world
+  Matrix3d R_HK = Matrix3d::Identity();  ///< the hand's axes in the handle's
 
-  Posed HandInWorld(const Posed& X_DH) const noexcept;
+  Posed HandInWorld(const Posed& X_DH) const noexcept;  ///< X_WK of a sample
   /// The hand, of a handle that moves in D.
   void TakeHandInWorld(const MovingFrame& handle, MovingFrame* hand) const noexcept;
 };

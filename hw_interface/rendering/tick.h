@@ -24,7 +24,7 @@ struct TickInput {
   /// Energy that the mechanism got and the hand has not given, as far as it is no error of
   /// measurement; for ticks whose mechanism moves by itself [J].
   double debt = 0;
-  const MasterState* state = nullptr;
+  const MasterState* state = nullptr;  ///< the whole sample; null: there is none
   /// The hand in a fresh sample as an observer knows it (HandObserver); null: nobody observes it.
   /// For ticks that take it (UsesObservedHand) alone.
   const MovingFrame* observed = nullptr;
@@ -42,9 +42,9 @@ enum class TickStatus : std::uint8_t {
 
 /// What a tick answers.
 struct TickOutput {
-  TickStatus status = TickStatus::kOk;
-  Vector6d F_Ho_W = Vector6d::Zero();  ///< what the hand is to feel, about Ho, axes of W
-  double stored_energy = 0;            ///< of the virtual mechanism, see passivity.h [J]
+  TickStatus status = TickStatus::kOk;  ///< whether F_Ho_W is to be felt
+  Vector6d F_Ho_W = Vector6d::Zero();   ///< what the hand is to feel, about Ho, axes of W
+  double stored_energy = 0;             ///< of the virtual mechanism, see passivity.h [J]
 };
 
 /// The virtual side: from the hand to what it feels, once per sample. Implementations allocate in
@@ -77,10 +77,12 @@ class Tick {
   // A mechanism in several hands at once; by default there is one, and the functions above are its.
   /// `hand`, counted from 0, in [0, hands()).
   virtual int hands() const noexcept { return 1; }
+  /// X_WG of a hand, counted from 0.
   virtual Posed HeldFrame(int hand) const noexcept {
     (void)hand;
     return GraspFrame();
   }
+  /// GraspAt of a hand, counted from 0.
   virtual bool HandGraspsAt(int hand, const Posed& X_WH) noexcept {
     (void)hand;
     return GraspAt(X_WH);

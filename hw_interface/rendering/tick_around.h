@@ -13,6 +13,7 @@ namespace vmech {
 /// A tick that adds something to the steps of another, to which it hands everything on.
 class TickAround : public Tick {
  public:
+  /// The tick that it is put around.
   explicit TickAround(std::unique_ptr<Tick> tick) : tick_(std::move(tick)) {}
 
   std::vector<std::string> ChannelNames() const override { return tick_->ChannelNames(); }
@@ -28,7 +29,9 @@ class TickAround : public Tick {
     return output;
   }
   int hands() const noexcept override { return tick_->hands(); }
+  /// The inner tick's.
   Posed HeldFrame(int hand) const noexcept override { return tick_->HeldFrame(hand); }
+  /// The inner tick's.
   bool HandGraspsAt(int hand, const Posed& X_WH) noexcept override {
     return tick_->HandGraspsAt(hand, X_WH);
   }
@@ -40,7 +43,7 @@ class TickAround : public Tick {
   std::string FullReport() const override { return tick_->FullReport(); }
 
  protected:
-  Tick* around() const noexcept { return tick_.get(); }
+  Tick* around() const noexcept { return tick_.get(); }  ///< the inner tick
 
  private:
   std::unique_ptr<Tick> tick_;

@@ -29,7 +29,8 @@ struct TickPicture : HandPicture {
   bool design_stopped = false;      ///< or where its loops close no further
   double design_work = 0;           ///< of the changes on the mechanism [J]
 
-  HandPicture& hand(int i) noexcept { return i == 0 ? *this : others[i - 1]; }
+  HandPicture& hand(int i) noexcept { return i == 0 ? *this : others[i - 1]; }  ///< counted from 0
+  /// Counted from 0.
   const HandPicture& hand(int i) const noexcept { return i == 0 ? *this : others[i - 1]; }
 };
 

@@ -52,7 +52,7 @@ struct SafetyOptions {
   double max_speed = 0;      ///< trip [m/s], in [0, 100]; 0: the device's
   double max_angular_speed = 0;  ///< trip [rad/s], in [0, 1000]; 0: the device's
   double energy_trip = 0.2;      ///< debt that trips [J], in [1e-4, 100]
-  PassivityOptions passivity;
+  PassivityOptions passivity;    ///< of the observer of energy
 
   /// @throws std::invalid_argument naming field, value and range.
   void Validate() const;
@@ -60,29 +60,29 @@ struct SafetyOptions {
 
 /// What the filter judges in a tick.
 struct SafetyInput {
-  Lifecycle lifecycle = Lifecycle::kUnconfigured;
-  IoStatus io = IoStatus::kOk;         ///< of the read
-  const MasterState* state = nullptr;  ///< of the read
-  Vector6d F_Ho_D = Vector6d::Zero();  ///< what the tick wants
-  double stored_energy = 0;            ///< of the virtual mechanism [J]; see passivity.h
-  WrenchLimit room = {};               ///< what the device can exert at this posture
+  Lifecycle lifecycle = Lifecycle::kUnconfigured;  ///< of the device, when it was read
+  IoStatus io = IoStatus::kOk;                     ///< of the read
+  const MasterState* state = nullptr;              ///< of the read
+  Vector6d F_Ho_D = Vector6d::Zero();              ///< what the tick wants
+  double stored_energy = 0;  ///< of the virtual mechanism [J]; see passivity.h
+  WrenchLimit room = {};     ///< what the device can exert at this posture
 };
 
 /// What the safety filter made of a wrench.
 struct SafetyOutput {
   std::uint64_t sequence = 0;  ///< that the command must carry, so that an echo tells which it was
-  Vector6d F_Ho_D = Vector6d::Zero();
-  ForceOff off = ForceOff::kNotActive;
-  std::uint32_t stages = 0;  ///< bits of SafetyStage
-  double energy = 0;         ///< the observer's [J]
+  Vector6d F_Ho_D = Vector6d::Zero();   ///< what is sent, within all bounds
+  ForceOff off = ForceOff::kNotActive;  ///< why nothing is sent; kNone: it is
+  std::uint32_t stages = 0;             ///< bits of SafetyStage
+  double energy = 0;                    ///< the observer's [J]
 };
 
 /// Ticks in which each thing happened since construction.
 struct SafetyCounters {
-  std::uint64_t ticks = 0;
-  std::uint64_t off = 0;    ///< without force
-  std::uint64_t trips = 0;  ///< latched
-  std::array<std::uint64_t, kSafetyStages> stages{};
+  std::uint64_t ticks = 0;                            ///< since construction
+  std::uint64_t off = 0;                              ///< without force
+  std::uint64_t trips = 0;                            ///< latched
+  std::array<std::uint64_t, kSafetyStages> stages{};  ///< by SafetyStage
 };
 
 /// The last word on every wrench, between the tick and the device, for any device:
@@ -108,6 +108,7 @@ class SafetyFilter {
   ///         largest force and moment.
   SafetyFilter(const SafetyOptions& options, const DeviceInfo& info);
 
+  /// Once per tick, in their order.
   [[nodiscard]] SafetyOutput Apply(const SafetyInput& input) noexcept VMECH_NONBLOCKING;
 
   /// Starts the ramp again: at a grasp, a release or a change of gains. Energy starts anew.
@@ -123,8 +124,9 @@ class SafetyFilter {
   /// The same with what the soft start withheld of it, where that is carried: what is charged.
   Vector6d WrenchCharged(const MasterState& state) const noexcept;
 
+  /// The cause of a trip; kNone: there was none.
   ForceOff latched() const noexcept { return latched_; }
-  const SafetyCounters& counters() const noexcept { return counters_; }
+  const SafetyCounters& counters() const noexcept { return counters_; }  ///< since construction
   /// The energy that the hand has not given, beyond the grace of the passivity controller [J].
   double Debt() const noexcept {
     return std::max(0.0, -passivity_.energy() - options_.passivity.grace);

@@ -22,12 +22,12 @@ enum class ScreenMode {
 
 /// A mechanism on a screen, at a moment.
 struct ScreenState {
-  double time = 0;  ///< that has passed for it [s]
-  ScreenMode mode = ScreenMode::kFrozen;
-  std::vector<Posed> links;         ///< X_WL
+  double time = 0;                        ///< that has passed for it [s]
+  ScreenMode mode = ScreenMode::kFrozen;  ///< frozen, held or swinging
+  std::vector<Posed> links;               ///< X_WL
   std::vector<double> coordinates;  ///< of the freedoms of all joints; a spherical joint has the
                                     ///< rotation vector
-  std::vector<double> rates;
+  std::vector<double> rates;        ///< of the same freedoms [m/s, rad/s]
   /// Of every joint, as JointSample; empty where it is frozen: then it is not said what holds it.
   std::vector<Wrenchd> wrenches;
   std::vector<JointCertainty> certainty;  ///< of these
@@ -41,7 +41,7 @@ struct ScreenState {
 
 /// A point in the world that a link was drawn through, as a hand's motion.
 struct DraggedPath {
-  int link = -1;
+  int link = -1;                    ///< index in Mechanism::links
   Vector3d p_L = Vector3d::Zero();  ///< the point by which it was held, in the link's frame
   VectorXd q;                       ///< of the tree, where it was grabbed
   std::vector<double> times;        ///< [s] from the grab on
@@ -62,10 +62,12 @@ class ScreenMechanism {
   /// load is left out, and springs and friction of joints that have to be cut: `notes` says so.
   explicit ScreenMechanism(Mechanism assembled);
 
+  /// What is left out, for the user.
   const std::vector<std::string>& notes() const { return notes_; }
-  const Mechanism& mechanism() const { return tree_->mechanism; }
-  const KinematicTree& tree() const { return *tree_; }
-  const VectorXd& q() const { return dynamics_ ? dynamics_->q() : q_; }
+  const Mechanism& mechanism() const { return tree_->mechanism; }  ///< with its current design
+  const KinematicTree& tree() const { return *tree_; }  ///< of the mechanism, at its current design
+  const VectorXd& q() const { return dynamics_ ? dynamics_->q() : q_; }  ///< [nq], loops closed
+  /// Time matters to it.
   bool moves() const { return mode_ != ScreenMode::kFrozen || (design_ && design_->moves()); }
 
   // Requests. All throw std::invalid_argument, naming the value, for what does not exist or is not
@@ -78,8 +80,8 @@ class ScreenMechanism {
   /// The hand stops pulling. `keep`: it holds the point where that has come to, so that the spring
   /// carries what the mechanism puts on it and no more; else it opens, and the mechanism swings.
   void Release(bool keep);
-  void Swing();
-  void Freeze();
+  void Swing();   ///< moves by its own dynamics from now on
+  void Freeze();  ///< stands still from now on
   /// Back to the start pose, frozen.
   void Reset();
   /// Turns or shifts one freedom of a joint as near to `value` as limits and loops let it, on the
@@ -102,7 +104,7 @@ class ScreenMechanism {
   /// Lets time pass, a whole number of steps.
   void Advance(int steps);
 
-  ScreenState State() const;
+  ScreenState State() const;  ///< a copy of what is shown
   /// The mechanism with a closed pose of the tree as its start.
   Mechanism MechanismAt(const VectorXd& q) const;
   /// Since the last grab.

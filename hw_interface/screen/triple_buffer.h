@@ -11,15 +11,18 @@ namespace vmech {
 template <typename T>
 class TripleBuffer {
  public:
+  /// All three, so that they have its size.
   explicit TripleBuffer(const T& value) : values_{value, value, value} {}
 
   // The writer:
-  T& back() noexcept { return values_[back_]; }
+  T& back() noexcept { return values_[back_]; }  ///< to be filled by the writer
+  /// What is in back() is the newest.
   void Publish() noexcept { back_ = middle_.exchange(back_ | kFresh) & kIndex; }
   /// Has the reader taken what was published last?
   bool wanted() const noexcept { return (middle_.load(std::memory_order_relaxed) & kFresh) == 0; }
 
   // The reader:
+  /// The reader's, until the next Take.
   const T& front() const noexcept { return values_[front_]; }
   /// False if nothing has been published since the last call.
   bool Take() noexcept {

@@ -23,8 +23,8 @@ class VariedTick : public TickAround {
 
   /// A design on its way to the tick, numbered from 1 on.
   struct Sent {
-    std::uint64_t number = 0;
-    HeldDesign design;
+    std::uint64_t number = 0;  ///< from 1, the newest is the largest
+    HeldDesign design;         ///< with the numbers of all links and joints
   };
 
   /// `start`: the design that the tick has, with a grasp for each hand.

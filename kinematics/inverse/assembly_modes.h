@@ -11,8 +11,8 @@ namespace vmech {
 
 /// A grasp that must be exactly where the hand is.
 struct HandPose {
-  GraspFrame grasp;
-  Posed X_WH;
+  GraspFrame grasp;  ///< on its link
+  Posed X_WH;        ///< of the hand in the world
 };
 
 /// What a search for assembly modes holds, and how long it searches.
@@ -39,6 +39,7 @@ struct AssemblyModesOptions {
   /// The same seed gives the same modes in the same order.
   std::uint64_t seed = 1;
 
+  /// @throws std::invalid_argument naming field, value and range
   void Validate(const KinematicTree& tree) const;
 };
 
@@ -55,8 +56,8 @@ struct AssemblyMode {
 /// What a search for assembly modes found.
 struct AssemblyModes {
   std::vector<AssemblyMode>
-      modes;  ///< in the order of discovery, the given pose first if it is one
-  int starts = 0;
+      modes;             ///< in the order of discovery, the given pose first if it is one
+  int starts = 0;        ///< that were made
   int converged = 0;     ///< starts that ended in a mode
   int since_new = 0;     ///< starts since the last new mode
   bool settled = false;  ///< `patience` was reached, not `max_starts`

@@ -25,7 +25,7 @@ std::string_view NameOf(TrackStatus status);
 
 /// How closely a hand is followed, and with how much work a target.
 struct TrackOptions {
-  InverseKinematicsOptions kinematics;
+  InverseKinematicsOptions kinematics;  ///< what the hand's error is measured by
   /// lambda of paper eq. (8) against the dimensionless hand error [-], 1..1e4. The multiplier
   /// update makes the result independent of it; from 1e3 on, rounding begins to count.
   double weight = 5e1;
@@ -43,20 +43,21 @@ struct TrackOptions {
   /// Steps shorter than this have arrived [rad or m], in [1e-14, 1e-3].
   double step_tolerance = 1e-6;
 
-  void Validate() const;
+  void Validate() const;  ///< @throws std::invalid_argument naming field, value and range
 };
 
 /// What became of the targets since the tracker began.
 struct TrackSummary {
-  long targets = 0;
-  long followed = 0;
-  long catching_up = 0;
-  long dead_centre = 0;  ///< targets at which the pose was held, by reason
-  long jumps = 0;
-  long lost = 0;
+  long targets = 0;          ///< all of them
+  long followed = 0;         ///< reached, or as near as the mechanism comes
+  long catching_up = 0;      ///< not yet at the nearest pose
+  long dead_centre = 0;      ///< targets at which the pose was held, by reason
+  long jumps = 0;            ///< the nearest pose was on another branch
+  long lost = 0;             ///< no step led nearer
   long rescued = 0;          ///< needed the line search
   double worst_closure = 0;  ///< largest |c_i| of all poses returned
 
+  /// Targets at which the pose stayed as it was.
   long held() const { return dead_centre + jumps + lost; }
   std::string BriefReport() const;  ///< one line
 };
@@ -90,8 +91,8 @@ class HandTracker {
   const VectorXd& q() const { return q_; }  ///< the last good pose
   /// Of q(), as Summary::multipliers; InverseKinematics::LoopMultipliers makes wrenches of them.
   const VectorXd& multipliers() const { return workspace_.multipliers; }
-  InverseKinematics& kinematics() { return problem_; }
-  const TrackSummary& summary() const { return summary_; }
+  InverseKinematics& kinematics() { return problem_; }      ///< the problem that is solved
+  const TrackSummary& summary() const { return summary_; }  ///< since the tracker began
   /// S [nv, nv; J]: the second derivatives of 1/2 e1'K e1 + mu'e2 at q(), for the target that was
   /// followed last; nothing along motions that neither hand nor loops see. They vanish where the
   /// hand is on the mechanism's path.

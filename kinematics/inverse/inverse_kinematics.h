@@ -11,7 +11,7 @@ namespace vmech {
 
 /// What the hand's error is measured by, and whether limits hold.
 struct InverseKinematicsOptions {
-  RotationError rotation_error = RotationError::kLogarithm;
+  RotationError rotation_error = RotationError::kLogarithm;  ///< the angle, or the paper's sine
   /// K, diagonal, along and about the world's axes [N/m, N m/rad], each >= 0. It weighs metres
   /// against radians and makes K e1 the wrench of the hand; a zero leaves that row out. All zero,
   /// the default, stands for 1 N/m and L^2 N m/rad, L the characteristic length.
@@ -51,24 +51,24 @@ class InverseKinematics final : public ConstrainedLeastSquares {
 
   /// The pose of the hand; the identity to begin with.
   void SetTarget(const Posed& X_WH) noexcept { X_WH_ = X_WH; }
-  const Posed& target() const { return X_WH_; }
+  const Posed& target() const { return X_WH_; }  ///< X_WH of the hand
 
   void Evaluate(const VectorXd& q, VectorXd* r, MatrixXd* J, VectorXd* c, MatrixXd* C) override;
   void Plus(const VectorXd& q, const VectorXd& dq, VectorXd* q_plus) const override;
   bool has_second_derivatives() const override { return true; }
   void Curvature(const VectorXd& q, const VectorXd& mu, MatrixXd* S) override;
 
-  const KinematicTree& tree() const { return tree_; }
-  const GraspFrame& grasp() const { return grasp_; }
-  const Vector6d& stiffness() const { return K_; }  ///< K; zero in rows that are left out
-  double energy() const { return energy_; }         ///< E [J]
+  const KinematicTree& tree() const { return tree_; }  ///< of the mechanism, its loops cut
+  const GraspFrame& grasp() const { return grasp_; }   ///< on its link
+  const Vector6d& stiffness() const { return K_; }     ///< K; zero in rows that are left out
+  double energy() const { return energy_; }            ///< E [J]
 
   /// In SI units at q: X_WG, e1 [m, rad] (whole, for a point grasp too), K e1 [N, N m] on the
   /// grasp at Go, e2 [rows; m, rad].
   Posed GraspPose(const VectorXd& q);
-  Vector6d HandError(const VectorXd& q);
-  Vector6d HandWrench(const VectorXd& q);
-  VectorXd LoopError(const VectorXd& q);
+  Vector6d HandError(const VectorXd& q);   ///< e1 [6]
+  Vector6d HandWrench(const VectorXd& q);  ///< K e1 [6]
+  VectorXd LoopError(const VectorXd& q);   ///< e2 [rows]
   /// E W mu [rows; N, N m] from the multipliers of a Summary.
   VectorXd LoopMultipliers(const VectorXd& mu) const;
   /// The state of the tree at the last q that one of the above was called with.

@@ -12,8 +12,8 @@ namespace vmech {
 
 /// A coordinate that the assembly moved from where the mechanism states it.
 struct MovedStart {
-  int joint = -1;
-  int freedom = 0;
+  int joint = -1;           ///< index in Mechanism::joints
+  int freedom = 0;          ///< counted from 0
   double from = 0, to = 0;  ///< [m] or [rad]
 };
 
@@ -37,7 +37,7 @@ struct AssembledMechanism {
 
 /// What AssembleMechanism closes loops by, and what it leaves alone.
 struct AssembleOptions {
-  AssemblyOptions closing;
+  AssemblyOptions closing;        ///< when loops count as closed
   std::vector<int> fixed_joints;  ///< whose start values stay as given
 };
 

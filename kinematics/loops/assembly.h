@@ -22,15 +22,15 @@ struct AssemblyOptions {
   /// none.
   int other_starts = 48;
 
-  void Validate() const;
+  void Validate() const;  ///< @throws std::invalid_argument naming field, value and range
   /// From the given coordinates only: for poses near to closed ones.
   static AssemblyOptions Nearby();
 };
 
 /// What came of closing loops.
 struct AssemblySummary {
-  bool closed = false;
-  int iterations = 0;
+  bool closed = false;        ///< within the tolerance
+  int iterations = 0;         ///< of all starts together
   double start_error = 0;     ///< largest loop error of the given coordinates
   double error = 0;           ///< and of the returned ones; dimensionless as LargestLoopError
   int starts = 1;             ///< that were tried

@@ -10,11 +10,11 @@ namespace vmech {
 /// Two joints of one link whose axes do not lie as the loops need them, through the rounding of
 /// their figures.
 struct AxisMisfit {
-  int link = -1;
-  int joint = -1, other_joint = -1;
-  bool parallel = false;  ///< the loops need the axes to be parallel (or in line)
-  double angle = 0;       ///< between the axes, off what closes the loops [rad]
-  double distance = 0;    ///< between the joint centres, off what closes the loops [m]
+  int link = -1;                     ///< index in Mechanism::links
+  int joint = -1, other_joint = -1;  ///< indices in Mechanism::joints
+  bool parallel = false;             ///< the loops need the axes to be parallel (or in line)
+  double angle = 0;                  ///< between the axes, off what closes the loops [rad]
+  double distance = 0;               ///< between the joint centres, off what closes the loops [m]
 };
 
 /// The pairs of joints that lie differently in two versions of a mechanism, as drawn and as

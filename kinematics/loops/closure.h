@@ -18,8 +18,10 @@ namespace vmech {
 template <typename T>
 class DependentSolver {
  public:
+  /// Keeps a reference to the tree.
   DependentSolver(const KinematicTree& tree, CoordinatePartition partition);
 
+  /// Which velocities are independent.
   const CoordinatePartition& partition() const { return partition_; }
 
   /// Needs LoopJacobian in ws.

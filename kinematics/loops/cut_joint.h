@@ -18,8 +18,8 @@ Vector3<T> CutJointCoordinates(const Loop& loop, const LoopState<T>& state);
 /// Unit twists [v; w] of M in F of the freedoms of a cut joint, axes of F.
 template <typename T>
 struct CutJointFreedoms {
-  int count = 0;
-  Vector6<T> twist_F[3];
+  int count = 0;          ///< 0 to 3
+  Vector6<T> twist_F[3];  ///< the first `count` of them
 };
 /// Of the joint at which a loop is cut, in the pose that `state` is of.
 template <typename T>

@@ -14,23 +14,23 @@ namespace vmech {
 
 /// The dimensionless loop equations at a pose, C dq = e.
 struct LoopEquations {
-  VectorXd e;
-  RankSplit C;
+  VectorXd e;   ///< [rows]
+  RankSplit C;  ///< [rows, nv] and what is left of it
 };
 
 /// A closed pose, as far as its loops close.
 struct WalkedPose {
-  VectorXd q;
-  int rank = 0;
-  double misfit = 0;
+  VectorXd q;         ///< [nq]
+  int rank = 0;       ///< of C there
+  double misfit = 0;  ///< loop error that no step removes [-]
 };
 
 /// Closes loops by least squares over all rows; pivots below a tolerance count as zero.
 class LoopCloser {
  public:
-  LoopCloser(const KinematicTree& tree, double tolerance);
+  LoopCloser(const KinematicTree& tree, double tolerance);  ///< keeps a reference to the tree
 
-  LoopEquations At(const VectorXd& q);
+  LoopEquations At(const VectorXd& q);  ///< at a pose, open or closed
   /// Moves *pose to where no step closes its loops any more, and writes its rank and misfit. False
   /// if it has to go far for that, or the misfit is larger than the given one.
   bool Close(double largest_misfit, WalkedPose* pose);
@@ -46,12 +46,13 @@ class LoopCloser {
 
 /// What a mechanism can do if pivots below `tolerance` are rounding.
 struct Walk {
-  double tolerance = 0;
-  int rank = 0;
-  size_t mobile_clusters = 0;
+  double tolerance = 0;           ///< pivots below it count as zero
+  int rank = 0;                   ///< of C at every pose of the walk
+  size_t mobile_clusters = 0;     ///< parts that move, each by itself
   double misfit = 0;              ///< largest on the way
   std::vector<WalkedPose> poses;  ///< of that rank, the start first
   bool stuck = false;             ///< it could not leave a start that it should be able to leave
+  /// The misfit explains no pivot that counts.
   bool consistent() const {
     constexpr double kRoundingOverMisfit = 4;
     return !poses.empty() && !stuck && kRoundingOverMisfit * misfit <= tolerance;

@@ -74,8 +74,8 @@ T LargestLoopError(const KinematicTree& tree, const TreeWorkspace<T>& ws);
 /// How fast loops open with a parameter: the largest slope of their errors, scaled as
 /// LargestLoopError, and the loop that has it (-1 without loops). Of duals. Needs LoopErrors.
 struct LoopOpening {
-  double slope = 0;
-  int loop = -1;
+  double slope = 0;  ///< of the error, per unit of the parameter
+  int loop = -1;     ///< index in KinematicTree::loops
 };
 /// Of all loops of the tree, at the pose that ws is of.
 template <typename T>

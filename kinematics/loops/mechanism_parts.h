@@ -11,7 +11,7 @@ namespace vmech {
 /// one moves does not matter to them. It is cut where the whole is, and has its coordinates and its
 /// characteristic length.
 struct MechanismPart {
-  KinematicTree tree;
+  KinematicTree tree;       ///< with its own ground
   std::vector<int> joints;  ///< of the whole mechanism, by joint
   std::vector<int> q;       ///< indices in the whole tree's q [tree.nq]
 };

@@ -14,7 +14,7 @@ struct UnseenMotions {
   /// singular pose, where more motions are unseen for a moment, those that neighbours have too.
   MatrixXd basis;
 
-  int count() const { return static_cast<int>(basis.cols()); }
+  int count() const { return static_cast<int>(basis.cols()); }  ///< 0: everything is seen
 };
 
 /// Those of a grasp at q, a closed pose. Rank is judged at q and, where something is unseen there,

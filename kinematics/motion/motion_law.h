@@ -9,9 +9,9 @@ namespace vmech {
 
 /// Position, velocity and acceleration of a coordinate at one time.
 struct MotionSample {
-  double position = 0;
-  double velocity = 0;
-  double acceleration = 0;
+  double position = 0;      ///< [m] or [rad]
+  double velocity = 0;      ///< [m/s] or [rad/s]
+  double acceleration = 0;  ///< [m/s^2] or [rad/s^2]
 };
 
 /// How a driven coordinate moves in time: at constant acceleration, or through a table by the cubic
@@ -55,7 +55,7 @@ class MotionLaw {
 
 /// Pose, velocity and acceleration of a hand-held frame in the world.
 struct HandSample {
-  Posed X_WH;
+  Posed X_WH;     ///< pose in the world
   Vector6d V_WH;  ///< [v; w]
   Vector6d A_WH;  ///< [a; alpha]
 };
@@ -76,6 +76,7 @@ class HandLaw {
   HandSample At(double t) const;
   /// Of its positions [m/s^2] and of its rotation vectors [rad/s^2].
   TableRoughness position_roughness() const { return Together(position_); }
+  /// Of the rotation vectors.
   TableRoughness rotation_roughness() const { return Together(rotation_vector_); }
 
  private:

@@ -28,8 +28,8 @@ inline int VelocitiesOf(NodeMotion motion) {
 
 /// An elementary joint of the tree, and the link behind it.
 struct TreeNode {
-  int parent = -1;  ///< index of a node before this one; -1 is the ground
-  NodeMotion motion = NodeMotion::kFixed;
+  int parent = -1;                         ///< index of a node before this one; -1 is the ground
+  NodeMotion motion = NodeMotion::kFixed;  ///< how it moves in its parent
   int joint = -1;         ///< the mechanism's joint that this elementary joint is (part of)
   bool reversed = false;  ///< the node belongs to the joint's first link
   int q = -1;             ///< first index in q
@@ -40,25 +40,25 @@ struct TreeNode {
   Matrix3d R_FE = Matrix3d::Identity();
   Posed X_PF;  ///< where the node is in its parent when its coordinate is zero
 
-  int link = -1;  ///< the link that moves with this node; -1 for a node between freedoms
-  Posed X_BL;     ///< the link's drawing frame in the node
-  double mass = 0;
-  Vector3d p_BoBcm = Vector3d::Zero();
-  Matrix3d I_Bcm = Matrix3d::Zero();  ///< about the centre of gravity, node axes
+  int link = -1;    ///< the link that moves with this node; -1 for a node between freedoms
+  Posed X_BL;       ///< the link's drawing frame in the node
+  double mass = 0;  ///< of the link [kg]; 0 between freedoms
+  Vector3d p_BoBcm = Vector3d::Zero();  ///< centre of gravity, node axes [m]
+  Matrix3d I_Bcm = Matrix3d::Zero();    ///< about the centre of gravity, node axes
 };
 
 /// Where the two anchors of a joint are carried: F with the first link, M with the second.
 struct JointPlacement {
-  int first_node = -1;  ///< -1 is the ground
-  int second_node = -1;
-  Posed X_AF;          ///< F in first_node
-  Posed X_BM;          ///< M in second_node
-  int tree_node = -1;  ///< the last node of the joint's chain; -1 if the joint is cut
+  int first_node = -1;   ///< -1 is the ground
+  int second_node = -1;  ///< -1 is the ground
+  Posed X_AF;            ///< F in first_node
+  Posed X_BM;            ///< M in second_node
+  int tree_node = -1;    ///< the last node of the joint's chain; -1 if the joint is cut
 };
 
 /// A velocity that opens or closes a loop.
 struct LoopColumn {
-  int node;
+  int node;     ///< index in KinematicTree::nodes
   int v;        ///< index in v
   int axis;     ///< 0..2 for a spherical joint, else 0
   double sign;  ///< +1 if it moves the second anchor of the cut joint, -1 if the first
@@ -66,31 +66,31 @@ struct LoopColumn {
 
 /// A node that lies on one side of a loop only.
 struct LoopNode {
-  int node;
+  int node;     ///< index in KinematicTree::nodes
   double sign;  ///< as LoopColumn::sign
 };
 
 /// A loop, closed by a cut joint with 6 - f equations.
 struct Loop {
-  int joint = -1;
-  JointType type = JointType::kRevolute;
-  double pitch = 0;
-  int row = 0;   ///< first equation of this loop
-  int rows = 0;  ///< 6 - f
-  std::vector<LoopColumn> columns;
+  int joint = -1;                         ///< the cut joint
+  JointType type = JointType::kRevolute;  ///< of the cut joint
+  double pitch = 0;                       ///< of a screw [m/rad]
+  int row = 0;                            ///< first equation of this loop
+  int rows = 0;                           ///< 6 - f
+  std::vector<LoopColumn> columns;        ///< only those that are not zero
   std::vector<LoopNode> path;  ///< nodes around the loop, those without a freedom included
 };
 
 /// A mechanism whose loops are cut: a tree of elementary joints, and the loops that close it.
 struct KinematicTree {
-  Mechanism mechanism;
-  SpanningTree spanning;
-  std::vector<TreeNode> nodes;
+  Mechanism mechanism;                     ///< with its start values
+  SpanningTree spanning;                   ///< which joints are cut
+  std::vector<TreeNode> nodes;             ///< parents before children
   std::vector<JointPlacement> placements;  ///< one per joint of the mechanism
-  std::vector<Loop> loops;
-  int nq = 0;
-  int nv = 0;
-  int rows = 0;  ///< loop equations in all
+  std::vector<Loop> loops;                 ///< one per cut joint
+  int nq = 0;                              ///< coordinates, four for a quaternion
+  int nv = 0;                              ///< velocities
+  int rows = 0;                            ///< loop equations in all
   /// Indices in q of angles; lengths and quaternions are none.
   std::vector<int> revolute_coordinates;
   double length = 1;  ///< characteristic length [m]
@@ -99,7 +99,7 @@ struct KinematicTree {
 
   /// Node that carries a link; -1 for the ground.
   int NodeOfLink(int link) const { return node_of_link[link]; }
-  std::vector<int> node_of_link;
+  std::vector<int> node_of_link;      ///< [links] as NodeOfLink
   Posed X_node_link(int link) const;  ///< the link's drawing frame in its node
 };
 
@@ -109,21 +109,22 @@ template <typename T>
 struct Design {
   /// The numbers of a link, in its drawing axes. SI units.
   struct LinkNumbers {
-    T mass;
-    Vector3<T> p_LoLcm;
-    Matrix3<T> I_Lcm;
+    T mass;                     ///< [kg]
+    Vector3<T> p_LoLcm;         ///< centre of gravity [m]
+    Matrix3<T> I_Lcm;           ///< about it [kg m^2]
     std::vector<Pose<T>> X_LA;  ///< anchors
   };
   /// The numbers of a joint.
   struct JointNumbers {
-    T pitch;
+    T pitch;                              ///< of a screw [m/rad]
     std::array<PassiveOf<T>, 3> passive;  ///< per freedom
-    LoadFrictionOf<T> load_friction;
+    LoadFrictionOf<T> load_friction;      ///< of the joint as a whole
   };
-  std::vector<LinkNumbers> links;
-  std::vector<JointNumbers> joints;
-  Vector3<T> gravity_W;
+  std::vector<LinkNumbers> links;    ///< in the mechanism's order
+  std::vector<JointNumbers> joints;  ///< in the mechanism's order
+  Vector3<T> gravity_W;              ///< [m/s^2], world axes
 
+  /// With numbers of another type.
   template <typename S>
   Design<S> cast() const;
 };
@@ -137,18 +138,18 @@ template <typename T>
 struct TreeDesign {
   /// The numbers of a node: where it stands on its parent, and its mass properties. SI units.
   struct NodeNumbers {
-    Pose<T> X_PF, X_BL;
-    T pitch = T(0), mass = T(0);
-    Vector3<T> p_BoBcm = Vector3<T>::Zero();
-    Matrix3<T> I_Bcm = Matrix3<T>::Zero();
+    Pose<T> X_PF, X_BL;                       ///< as in TreeNode
+    T pitch = T(0), mass = T(0);              ///< [m/rad], [kg]
+    Vector3<T> p_BoBcm = Vector3<T>::Zero();  ///< as in TreeNode [m]
+    Matrix3<T> I_Bcm = Matrix3<T>::Zero();    ///< as in TreeNode [kg m^2]
   };
   /// The numbers of a joint's placement on its two links. SI units.
   struct PlacementNumbers {
-    Pose<T> X_AF, X_BM;
-    T pitch;
+    Pose<T> X_AF, X_BM;  ///< as in JointPlacement
+    T pitch;             ///< of a screw [m/rad]
   };
-  std::vector<NodeNumbers> nodes;
-  std::vector<PlacementNumbers> placements;
+  std::vector<NodeNumbers> nodes;            ///< in the tree's order
+  std::vector<PlacementNumbers> placements;  ///< in the mechanism's order
 };
 /// From the numbers of the mechanism that the tree is of.
 template <typename T>

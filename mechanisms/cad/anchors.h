@@ -11,23 +11,23 @@ namespace vmech {
 
 /// A named frame on a body.
 struct BodyFrame {
-  int body = -1;
+  int body = -1;      ///< index of the body; -1: directly in the file
   std::string frame;  ///< as the file calls it
-  FrameName name;
-  Posed X_WA;  ///< turned if its name ends in _inv
+  FrameName name;     ///< its name, taken apart
+  Posed X_WA;         ///< turned if its name ends in _inv
 };
 
 /// Two frames of one joint on two bodies.
 struct AnchorPair {
-  BodyFrame first, second;
+  BodyFrame first, second;  ///< in the order of the file
 };
 
 /// Pairs by name. FreeCAD numbers names that come twice ("anchor_pin001"): such a number is
 /// overlooked where the name without it is there, too.
 struct AnchorMatches {
-  std::vector<AnchorPair> pairs;  ///< in the order of their first frames
-  std::vector<BodyFrame> unmatched;
-  std::vector<std::string> errors;  ///< three anchors of one joint, both on one body
+  std::vector<AnchorPair> pairs;     ///< in the order of their first frames
+  std::vector<BodyFrame> unmatched;  ///< whose joint has no other frame
+  std::vector<std::string> errors;   ///< three anchors of one joint, both on one body
 };
 /// Pairs the frames that name the same joint.
 AnchorMatches MatchAnchors(std::vector<BodyFrame> frames);

@@ -31,17 +31,17 @@ double DensityFromText(const std::string& text);
 
 /// Mass properties of a body in its axes L, and where they come from, part by part.
 struct BodyMass {
-  MassProperties mass_properties;
+  MassProperties mass_properties;  ///< in the body's axes L
   /// A part's share of the mass of a body.
   struct Part {
-    int part = -1;  ///< index in CadAssembly
-    std::string name;
-    double volume = 0;   ///< [m^3]
-    double density = 0;  ///< [kg/m^3]
-    std::string source;  ///< of the density
-    bool assumed = false;
+    int part = -1;         ///< index in CadAssembly
+    std::string name;      ///< as the file calls it
+    double volume = 0;     ///< [m^3]
+    double density = 0;    ///< [kg/m^3]
+    std::string source;    ///< of the density
+    bool assumed = false;  ///< nobody stated the density
   };
-  std::vector<Part> parts;
+  std::vector<Part> parts;           ///< in the order of the assembly
   std::vector<std::string> defects;  ///< of its parts, in words
 };
 

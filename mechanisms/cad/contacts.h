@@ -24,11 +24,11 @@ namespace vmech {
 /// which it can turn away, do not count.
 
 struct ProposedJoint {
-  JointType type = JointType::kRevolute;
-  Posed X_WJ;             ///< of both anchors
-  double radius = 0;      ///< of the shaft or ball [m]; 0 if there is none
-  std::string why;        ///< "shaft of 20 mm in a bore, planes in contact"
-  bool fastened = false;  ///< screws, rivets or pins are among the contacts
+  JointType type = JointType::kRevolute;  ///< that leaves free what the contacts do
+  Posed X_WJ;                             ///< of both anchors
+  double radius = 0;                      ///< of the shaft or ball [m]; 0 if there is none
+  std::string why;                        ///< "shaft of 20 mm in a bore, planes in contact"
+  bool fastened = false;                  ///< screws, rivets or pins are among the contacts
 };
 
 /// What the contacts between two bodies leave free; none if they do not touch, or leave something

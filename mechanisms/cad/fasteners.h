@@ -26,9 +26,9 @@ namespace vmech {
 
 /// A body that became a part of another.
 struct BodyMerge {
-  std::string body, into;
-  std::string why;  ///< "fastener: shaft of 4 mm in a bore of 4 mm", "asked for (--weld)"
-  bool is_guess = false;
+  std::string body, into;  ///< names of bodies
+  std::string why;         ///< "fastener: shaft of 4 mm in a bore of 4 mm", "asked for (--weld)"
+  bool is_guess = false;   ///< nobody asked for it
 };
 
 /// Joins the bodies of BodyOptions::weld, the parts of BodyOptions::rigid with what they touch most

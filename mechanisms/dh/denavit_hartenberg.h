@@ -35,13 +35,13 @@ struct DhRow {
   std::string axis;  ///< whose axis z of the end frame is: "pin", "ball.ry", "grasp tip", ...
   int from = -1;     ///< row at whose end frame this one begins; -1: the world
   int link = -1;     ///< link to which the end frame is fixed; -1 between the freedoms of a joint
-  DhMotion motion = DhMotion::kFixed;
-  int joint = -1;    ///< index in Mechanism::joints of what moves; -1: nothing
-  int freedom = 0;   ///< which of the joint's freedoms
-  double pitch = 0;  ///< kScrew: d + pitch q [m/rad]
-  DhParameters parameters;
-  double gamma = 0;                                   ///< [rad]
-  double b = 0;                                       ///< [m]
+  DhMotion motion = DhMotion::kFixed;  ///< which of its parameters moves
+  int joint = -1;                      ///< index in Mechanism::joints of what moves; -1: nothing
+  int freedom = 0;                     ///< which of the joint's freedoms
+  double pitch = 0;                    ///< kScrew: d + pitch q [m/rad]
+  DhParameters parameters;             ///< at coordinate 0 of what moves
+  double gamma = 0;                    ///< [rad]
+  double b = 0;                        ///< [m]
   AxesRelation relation = AxesRelation::kCoincident;  ///< of the axes at both ends
 };
 

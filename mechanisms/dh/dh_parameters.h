@@ -43,10 +43,10 @@ constexpr double kParallel = 4e-15;
 /// A pose by its six parameters, two rows: X_PQ = PoseOf(row) Rz(theta) Tz(d). The row leads from
 /// the z axis of P, a line, to the z axis of Q; theta and d along that to Q itself.
 struct DhPair {
-  AxesRelation relation = AxesRelation::kCoincident;
-  DhParameters row;
-  double theta = 0;  ///< [rad]
-  double d = 0;      ///< [m]
+  AxesRelation relation = AxesRelation::kCoincident;  ///< of both z axes
+  DhParameters row;                                   ///< from the line of P's z to that of Q's
+  double theta = 0;                                   ///< [rad]
+  double d = 0;                                       ///< [m]
 };
 
 /// The row between the z axes of P and Q by their common normal. Where the axes leave a choice: x

@@ -10,7 +10,7 @@ namespace vmech {
 
 /// What came of a file of another program.
 struct ImportedMechanism {
-  Mechanism mechanism;
+  Mechanism mechanism;  ///< SI units
   /// What was guessed, changed or left out: a sentence each.
   std::vector<std::string> notes;
 };
@@ -31,7 +31,7 @@ struct ImportOptions {
 
 /// A mechanism in the language of another program.
 struct ExportedText {
-  std::string text;
+  std::string text;                ///< a whole file
   std::vector<std::string> notes;  ///< what that language cannot say, and what was done about it
 };
 

@@ -13,15 +13,15 @@ namespace vmech {
 
 /// Where something stands.
 struct Place {
-  std::string file;
-  int line = 0;  ///< from 1; 0: not known
+  std::string file;  ///< its name, for messages
+  int line = 0;      ///< from 1; 0: not known
 };
 
 /// Puts a mechanism together from links that are drawn in their places, as other programs have
 /// them: joints are given once in the world, and become an anchor on either link.
 class MechanismBuilder {
  public:
-  MechanismBuilder(std::string name, ImportOptions options);
+  MechanismBuilder(std::string name, ImportOptions options);  ///< `name` of the mechanism
 
   /// Index of the new link. The name is made fit for the format (Node::CheckName) and unique; a
   /// note says so. Its inertia may be what no body has: Finish mends it.
@@ -32,7 +32,8 @@ class MechanismBuilder {
   /// The same with the frame given on either link, so that these need not be in their places.
   Joint& AddJoint(std::string_view name, JointType type, int first, const Posed& X_LF, int second,
                   const Posed& X_LM);
-  void AddGrasp(std::string_view name, int link, const Posed& X_LG);
+  void AddGrasp(std::string_view name, int link, const Posed& X_LG);  ///< in the axes of the link
+  /// A sentence for the user.
   void Note(std::string note) { imported_.notes.push_back(std::move(note)); }
   /// Says what was wrong and what was done about it; with ImportOptions::strict Finish refuses it.
   void NoteMended(const Place& place, const std::string& defect, const std::string& change);

@@ -19,7 +19,7 @@ Matrix3d NearestInertia(const Matrix3d& I_cm);
 /// What was wrong and what was done about it, in words with the figures before and after; empty if
 /// there was nothing to mend.
 struct Mending {
-  std::string defect, change;
+  std::string defect, change;  ///< in words, with figures
 };
 
 /// Mends what no body has by as little as can be: an inertia that is wrong beyond rounding

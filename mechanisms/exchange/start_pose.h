@@ -16,11 +16,11 @@ std::vector<Posed> LinkStartPoses(const Mechanism& mechanism, const SpanningTree
 
 /// One freedom of a joint as it stands at the start: a turn about, or a shift along, a line.
 struct StartAxis {
-  int freedom = 0;
-  bool rotates = true;
-  Vector3d direction_W = Vector3d::UnitZ();
-  Vector3d point_W = Vector3d::Zero();
-  double coordinate = 0;  ///< at the start
+  int freedom = 0;                           ///< of the joint, counted from 0
+  bool rotates = true;                       ///< about the line, else along it
+  Vector3d direction_W = Vector3d::UnitZ();  ///< of length 1
+  Vector3d point_W = Vector3d::Zero();       ///< on the line [m]
+  double coordinate = 0;                     ///< at the start
 };
 
 /// The freedoms of a joint from its first anchor to its second; none for a spherical joint or a

@@ -21,7 +21,7 @@ class Expression {
   /// @throws ExpressionError: what is wrong, and what to write instead.
   explicit Expression(std::string_view text);
 
-  const std::string& text() const { return text_; }
+  const std::string& text() const { return text_; }  ///< as it was given
   /// The names in it, each once, in the order in which they first stand there.
   const std::vector<std::string>& names() const { return names_; }
   /// The name of which it is all, but for a sign; else empty.
@@ -33,12 +33,13 @@ class Expression {
 
   /// One thing to do with a stack of quantities.
   struct Step {
+    /// Which of the following counts.
     enum class Kind { kNumber, kUnit, kName, kNegative, kSum, kProduct, kRatio, kPower, kCall };
-    Kind kind = Kind::kNumber;
-    double number = 0;  ///< kNumber
-    bool pi = false;    ///< kNumber
-    Unit unit;          ///< kUnit
-    std::string name;   ///< kName, kCall
+    Kind kind = Kind::kNumber;  ///< what is done
+    double number = 0;          ///< kNumber
+    bool pi = false;            ///< kNumber
+    Unit unit;                  ///< kUnit
+    std::string name;           ///< kName, kCall
   };
 
  private:

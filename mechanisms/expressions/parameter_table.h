@@ -14,20 +14,20 @@ namespace vmech {
 /// A parameter's value as it is set from outside of the file that declares it: an expression, as
 /// text.
 struct ParameterSetting {
-  std::string name, text;
+  std::string name, text;  ///< of the parameter; the expression
 };
 
 /// An expression with the place where it stands and the units in which its bare numbers count.
 struct PlacedExpression {
-  Expression expression;
-  CountingUnits units;
-  FileError place;  ///< without a message
+  Expression expression;  ///< as it was read
+  CountingUnits units;    ///< of its bare numbers
+  FileError place;        ///< without a message
 };
 
 /// A value of a parameter that came from elsewhere.
 struct PlacedValue {
-  Quantity<Dual> value;
-  FileError place;  ///< without a message
+  Quantity<Dual> value;  ///< with a slope where derivatives are asked for
+  FileError place;       ///< without a message
 };
 
 /// Named expressions that refer to each other, in any order.
@@ -39,15 +39,16 @@ class ParameterTable {
  public:
   /// The index of the parameter; -1 if there is none of this name.
   int Find(std::string_view name) const;
-  int size() const { return static_cast<int>(entries_.size()); }
+  int size() const { return static_cast<int>(entries_.size()); }  ///< parameters that are declared
+  /// By its index.
   const std::string& name(int parameter) const { return entries_[parameter].name; }
-  std::vector<std::string> names() const;
+  std::vector<std::string> names() const;  ///< in the order of their declaration
   /// The expression by which it is declared, and the one that holds: that which set it last, if
   /// any did.
   const PlacedExpression& declared(int parameter) const { return entries_[parameter].declared; }
-  const PlacedExpression& holding(int parameter) const;
+  const PlacedExpression& holding(int parameter) const;  ///< as set last
 
-  void Declare(std::string name, PlacedExpression expression);
+  void Declare(std::string name, PlacedExpression expression);  ///< its index is size() before
   /// A bare number counts in the unit of the declaration; another dimension is refused.
   void Set(int parameter, PlacedExpression expression);
   /// The same by a value; with a slope where derivatives are asked for. None: as declared or set.

@@ -21,7 +21,7 @@ class CountingUnits {
   /// `base` are the units of length, angle, mass and time; `named` come before their products.
   CountingUnits(const Unit& length, const Unit& angle, const Unit& mass, const Unit& time,
                 std::vector<Unit> named);
-  const Unit& angle() const { return angle_; }
+  const Unit& angle() const { return angle_; }  ///< of bare angles
   /// The unit that a file has for a dimension.
   Unit Of(const Dimension& dimension) const;
 
@@ -37,7 +37,7 @@ class CountingUnits {
 /// a unit keeps it: products multiply the units, sums need the same dimension.
 template <typename T>
 struct Quantity {
-  T figure = T(0);
+  T figure = T(0);       ///< in `unit`
   Unit unit;             ///< SI = unit.factor * figure, unless it is bare
   bool bare = true;      ///< has no unit, not even that of a ratio
   bool radians = false;  ///< a bare number with pi in it: as an angle it counts in radians

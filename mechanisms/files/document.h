@@ -36,19 +36,19 @@ std::optional<double> ParseNumber(std::string_view text);
 
 /// What the expressions of a document may name, and the units in which its bare numbers count.
 struct ExpressionScope {
-  CountingUnits units;
+  CountingUnits units;             ///< of bare numbers
   std::vector<std::string> names;  ///< those without a value are reported where they are declared
-  NamedQuantities<double> values;
-  NamedQuantities<Dual> slopes;  ///< values with a derivative, where derivatives are asked for
+  NamedQuantities<double> values;  ///< of parameters
+  NamedQuantities<Dual> slopes;    ///< values with a derivative, where derivatives are asked for
 };
 
 /// Where an expression names a parameter.
 struct ParameterUse {
-  std::string parameter;
-  int line = 0;
-  std::string path;
-  bool alone = false;  ///< the expression is the parameter, but for a sign
-  Unit asked;          ///< by the place where it stands alone
+  std::string parameter;  ///< its name
+  int line = 0;           ///< from 1
+  std::string path;       ///< place in the document
+  bool alone = false;     ///< the expression is the parameter, but for a sign
+  Unit asked;             ///< by the place where it stands alone
 };
 
 class Document;
@@ -58,23 +58,24 @@ class Document;
 /// of the asked kind they report that and return the fallback.
 class Node {
  public:
-  using Kind = NodeKind;
+  using Kind = NodeKind;  ///< what stands there
 
   Node() = default;
+  /// Present: it stands in the file.
   explicit operator bool() const { return kind() != Kind::kAbsent; }
-  Kind kind() const;
+  Kind kind() const;  ///< kAbsent if it does not
   /// The key under which the node stands in a map, else empty.
   const std::string& key() const;
-  std::string path() const;
-  int line() const;
-  int column() const;
+  std::string path() const;  ///< "joints.main.start[1]"
+  int line() const;          ///< from 1; 0 if absent
+  int column() const;        ///< from 1; 0 if absent
 
   /// The document of a present node.
   Document& document() const { return *document_; }
 
   /// Reports what is wrong with this value, at the value or at its key.
   void Error(std::string message) const;
-  void KeyError(std::string message) const;
+  void KeyError(std::string message) const;  ///< at the key of the entry
 
   /// The value under a key of a map; absent if there is none.
   Node operator[](std::string_view key) const;
@@ -86,7 +87,7 @@ class Node {
 
   /// The entries of a list or of a map with free keys, in the order of the file.
   std::vector<Node> List() const;
-  std::vector<Node> Map() const;
+  std::vector<Node> Map() const;  ///< likewise, of a map alone
 
   /// Reports a key that cannot name a part: empty, longer than 100 bytes, with a blank at an end,
   /// or with '/', ',', '"', '\' or a control character in it.
@@ -104,25 +105,27 @@ class Node {
   std::optional<Quantity<T>> Value(const Unit* asked = nullptr) const;
   /// A figure in SI; the fallback is a figure.
   double Number(const Unit& asked, double fallback = 0) const;
-  double Positive(const Unit& asked, double fallback = 1) const;
-  double NonNegative(const Unit& asked, double fallback = 0) const;
+  double Positive(const Unit& asked, double fallback = 1) const;     ///< > 0
+  double NonNegative(const Unit& asked, double fallback = 0) const;  ///< >= 0
+  /// a list of three
   Vector3d Vector3(const Unit& asked, const Vector3d& fallback = Vector3d::Zero()) const;
   /// A list of exactly as many numbers as there are units, each in its own; for one a bare number
   /// will do. Empty if absent or wrong.
   std::vector<double> Numbers(std::span<const Unit> asked) const;
   /// Numbers without a dimension.
   double Number(double fallback = 0) const { return Number(Unit{}, fallback); }
-  double Positive(double fallback = 1) const { return Positive(Unit{}, fallback); }
-  double NonNegative(double fallback = 0) const { return NonNegative(Unit{}, fallback); }
+  double Positive(double fallback = 1) const { return Positive(Unit{}, fallback); }        ///< > 0
+  double NonNegative(double fallback = 0) const { return NonNegative(Unit{}, fallback); }  ///< >= 0
   /// The text of a scalar, whatever it reads as; else empty.
   std::string ScalarText() const;
-  int Integer(int fallback, int lowest, int highest) const;
-  bool Boolean(bool fallback) const;
-  std::string Text(std::string fallback = {}) const;
+  int Integer(int fallback, int lowest, int highest) const;  ///< within the two, inclusive
+  bool Boolean(bool fallback) const;                         ///< true or false
+  std::string Text(std::string fallback = {}) const;         ///< a scalar in quotes or without
+  /// A list of three numbers without a dimension.
   Vector3d Vector3(const Vector3d& fallback = Vector3d::Zero()) const {
     return Vector3(Unit{}, fallback);
   }
-  std::vector<double> Numbers(int count) const;
+  std::vector<double> Numbers(int count) const;  ///< a list of that many
   /// One of a set of words.
   template <typename Enum>
   Enum Word(std::initializer_list<std::pair<std::string_view, Enum>> words, Enum fallback) const {
@@ -155,15 +158,16 @@ class Document {
   Document(const Document&) = delete;
   Document& operator=(const Document&) = delete;
 
-  Node root() { return {this, 0}; }
-  const std::string& name() const { return name_; }
+  Node root() { return {this, 0}; }                  ///< the whole text
+  const std::string& name() const { return name_; }  ///< as messages name it
 
   /// Adds to what is wrong. @throws FileErrors when that becomes too much to read.
   void Report(FileError error);
   /// The same unless it is reported already: a file may be used several times.
   void ReportOnce(const FileError& error);
-  bool ok() const { return errors_.empty(); }
-  size_t error_count() const { return errors_.size(); }
+  bool ok() const { return errors_.empty(); }            ///< nothing was reported
+  size_t error_count() const { return errors_.size(); }  ///< reported so far
+  /// keeps the first `count`
   void ForgetErrorsAfter(size_t count) { errors_.resize(std::min(count, errors_.size())); }
   /// @throws FileErrors with everything reported so far, in the order of the lines; or returns.
   void ThrowErrors();
@@ -175,11 +179,12 @@ class Document {
 
   /// A file that the document names, with a digest of the bytes that were read.
   struct NamedFile {
-    std::filesystem::path path;
-    std::string digest;
+    std::filesystem::path path;  ///< absolute
+    std::string digest;          ///< of its bytes, as Sha256
   };
   /// Those who read such a file say so.
   void NoteNamedFile(NamedFile file) { named_files_.push_back(std::move(file)); }
+  /// in the order in which they were read
   const std::vector<NamedFile>& named_files() const { return named_files_; }
 
  private:

@@ -11,7 +11,7 @@ namespace vmech {
 
 /// One thing that is wrong with a file.
 struct FileError {
-  std::string file;
+  std::string file;     ///< as it was named
   int line = 0;         ///< from 1; 0 if the file as a whole is meant
   int column = 0;       ///< from 1
   std::string path;     ///< place in the document, as in "joints.main.start[1]"; may be empty
@@ -24,9 +24,9 @@ std::string ToString(const FileError& error);
 /// Everything that is wrong with one or several files. what() has a line for each.
 class FileErrors : public std::runtime_error {
  public:
-  explicit FileErrors(std::vector<FileError> errors);
-  FileErrors(std::string file, std::string message);
-  const std::vector<FileError>& errors() const { return errors_; }
+  explicit FileErrors(std::vector<FileError> errors);               ///< at least one
+  FileErrors(std::string file, std::string message);                ///< about the file as a whole
+  const std::vector<FileError>& errors() const { return errors_; }  ///< in the order of what()
 
  private:
   std::vector<FileError> errors_;

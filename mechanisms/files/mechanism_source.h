@@ -19,9 +19,9 @@ constexpr std::string_view kMechanismFormat = "1.0";
 
 /// A parameter and its value, for what is said about them.
 struct StatedParameter {
-  std::string name;
-  double figure = 0;
-  std::string unit;  ///< empty for a number
+  std::string name;   ///< as it is declared
+  double figure = 0;  ///< its value in `unit`
+  std::string unit;   ///< empty for a number
 };
 
 /// A mechanism file that is parsed once and read as often as its parameters change, with the files
@@ -35,14 +35,15 @@ class MechanismSource {
   MechanismSource& operator=(const MechanismSource&) = delete;
   ~MechanismSource();
 
-  const std::string& name() const { return document_.name(); }
-  const CountingUnits& units() const { return scope_.units; }
+  const std::string& name() const { return document_.name(); }  ///< as messages name it
+  const CountingUnits& units() const { return scope_.units; }   ///< of the file's bare numbers
   /// The parameters; those that others declare here are seen by the expressions of the file.
   ParameterTable& parameters() { return table_; }
-  const ParameterTable& parameters() const { return table_; }
+  const ParameterTable& parameters() const { return table_; }  ///< the same, to read
   /// What the parameters are, as of the last reading.
   const NamedQuantities<double>& values() const { return scope_.values; }
-  std::vector<StatedParameter> stated() const;
+  std::vector<StatedParameter> stated() const;  ///< with their values of the last reading
+  /// places where a parameter stands
   const std::vector<ParameterUse>& uses() const { return document_.uses(); }
 
   /// The mechanism for the parameters as they are declared and set.
@@ -51,10 +52,10 @@ class MechanismSource {
 
   /// The file itself and those that it uses, each once, as they were read.
   struct File {
-    std::filesystem::path path;
-    std::string text;
+    std::filesystem::path path;  ///< absolute
+    std::string text;            ///< its bytes
   };
-  std::vector<File> files() const;
+  std::vector<File> files() const;  ///< the first is the one that was asked for
 
  private:
   MechanismSource(std::string_view text, const std::string& name,

@@ -13,7 +13,7 @@ namespace vmech {
 /// The anchors of the links of a file by the name that joints use, "link/anchor".
 class AnchorNames {
  public:
-  explicit AnchorNames(const std::vector<Link>& links);
+  explicit AnchorNames(const std::vector<Link>& links);  ///< keeps a reference
   /// The anchor that a node names; reports it, with a near miss, if there is none.
   AnchorId Find(const Node& node) const;
   /// The anchor of a joint's name on the link that a node names; reports a link that there is not.

@@ -14,7 +14,7 @@ enum class FileUnits {
 
 /// How a mechanism file is written.
 struct WriterOptions {
-  FileUnits units = FileUnits::kMetresRadians;
+  FileUnits units = FileUnits::kMetresRadians;  ///< of all lengths and angles in it
   std::string comment;  ///< lines of text for the head of the file, without '#'; may be empty
 };
 

@@ -22,16 +22,16 @@ enum class CeresMethod {
 /// that Ceres moves on, and let go again where their bound would have to pull: an active set.
 /// [Agarwal, Mierle et al., Ceres Solver 2.1; Nocedal & Wright 2006, 17.3 and 16.5]
 struct CeresOptions {
-  CeresMethod method = CeresMethod::kExact;
+  CeresMethod method = CeresMethod::kExact;  ///< exact, or weighted
   /// w of kWeighted [-], in [1, 1e6], see PenaltyOptions::weight. Reached from 10 by powers of ten,
   /// so that curved constraints are met while they are soft.
   double weight = 1e3;
   /// Largest w of kExact [-], in [10, 1e7], which begins with 10 and raises it where the
   /// constraints close too slowly.
   double max_weight = 1e5;
-  StoppingRule stopping;
+  StoppingRule stopping;  ///< the verdict on where it ended
 
-  void Validate() const;
+  void Validate() const;  ///< @throws std::invalid_argument naming field, value and range
 };
 
 /// Solves by Ceres from x0; where it ended is judged by `options.stopping`.

@@ -17,9 +17,9 @@ struct IpoptOptions {
   double tolerance = 1e-11;
   /// The barrier to begin with, in [1e-12, 1e3]. Lower it for starts near the solution.
   double initial_barrier = 1e-3;
-  StoppingRule stopping;
+  StoppingRule stopping;  ///< the verdict on where it ended
 
-  void Validate() const;
+  void Validate() const;  ///< @throws std::invalid_argument naming field, value and range
 };
 
 /// Solves by Ipopt from x0; where it ended is judged by `options.stopping`.

@@ -21,9 +21,9 @@ struct KinsolOptions {
   std::vector<int> held;
   /// Largest residual of the system that ends the iteration, in [1e-16, 1e-3].
   double tolerance = 1e-13;
-  StoppingRule stopping;
+  StoppingRule stopping;  ///< the verdict on where it ended
 
-  void Validate() const;
+  void Validate() const;  ///< @throws std::invalid_argument naming field, value and range
 };
 
 /// Solves by KINSOL from x0; where it ended is judged by `options.stopping`.

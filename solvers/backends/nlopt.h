@@ -34,7 +34,7 @@ constexpr std::string_view NameOf(NloptMethod method) {
 /// stopped after a number of rounds that keeps every value finite.
 /// [Johnson, The NLopt nonlinear-optimization package, 2.7]
 struct NloptOptions {
-  NloptMethod method = NloptMethod::kSlsqp;
+  NloptMethod method = NloptMethod::kSlsqp;  ///< which of its algorithms
   /// Steps and changes of the objective that end a run, relative, in [1e-17, 1e-3].
   double tolerance = 1e-15;
   /// First step of COBYLA [unit of the tangent], in [1e-6, 10].
@@ -43,9 +43,9 @@ struct NloptOptions {
   double final_step = 1e-6;
   /// Time after which a solve is given up [s], in [1e-3, 1e6].
   double max_seconds = 60;
-  StoppingRule stopping;
+  StoppingRule stopping;  ///< the verdict on where it ended
 
-  void Validate() const;
+  void Validate() const;  ///< @throws std::invalid_argument naming field, value and range
 };
 
 /// Solves by NLopt from x0; where it ended is judged by `options.stopping`.

@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "vmech/solvers/backends/package.h"
+#include "vmech/solvers/packages/ipopt_mutex.h"
 #include "vmech/solvers/packages/tangent_chart.h"
 
 namespace vmech {
@@ -15,12 +16,6 @@ namespace {
 
 using Ipopt::Index;
 using Ipopt::Number;
-
-// Two solves at a time abort or hang: Ipopt 3.11 with MUMPS keeps global state.
-std::mutex& ProcessWideMutex() {
-  static std::mutex mutex;
-  return mutex;
-}
 
 Eigen::Map<const VectorXd> Vector(const Number* data, Index n) {
   return {data, n};
@@ -164,7 +159,7 @@ Outcome OutcomeOf(Ipopt::ApplicationReturnStatus status) {
 
 Outcome SolveByIpopt(CountedProblem& problem, const IpoptOptions& options, VectorXd* x) {
   const auto in_chart = [&](TangentChart& chart, int max_iterations, VectorXd* y) {
-    const std::lock_guard lock(ProcessWideMutex());
+    const std::lock_guard lock(IpoptMutex());
     Ipopt::IpoptApplication& application = KeptApplication();
     SetOptions(options, max_iterations, &application);
     const Ipopt::SmartPtr<Ipopt::TNLP> nlp = new ChartNlp(chart, y);

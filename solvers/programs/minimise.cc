@@ -15,13 +15,19 @@ namespace {
 
 constexpr double kActive = 1e-6;  // of a constraint, and of a variable from 0 to 1
 
-MinimiseFunction ByNlopt() {
-  static const LateLibrary library("nlopt");
-  if (!library.loaded()) {
-    throw std::runtime_error(library.error() +
-                             "; it is there if vmech is built where libnlopt-dev is installed");
+MinimiseFunction FunctionOf(const LateLibrary& library, const char* debian) {
+  if (library.loaded()) return library.Variable<MinimiseFunction>("vmech_minimise");
+  throw std::runtime_error(fmt::format("{}; it is there if vmech is built where {} is installed",
+                                       library.error(), debian));
+}
+
+MinimiseFunction FunctionOf(ProgramMethod method) {
+  if (method == ProgramMethod::kIpopt) {
+    static const LateLibrary ipopt("ipopt");
+    return FunctionOf(ipopt, "coinor-libipopt-dev");
   }
-  return library.Variable<MinimiseFunction>("vmech_minimise");
+  static const LateLibrary nlopt("nlopt");
+  return FunctionOf(nlopt, "libnlopt-dev");
 }
 
 void RequireInside(const NonlinearProgram& program, const VectorXd& x0) {
@@ -78,7 +84,7 @@ ProgramResult Minimise(NonlinearProgram& program, const ProgramOptions& options,
   const VectorXd u0 = (x0 - program.lower()).cwiseQuotient(scaled.Range());
   scaled.At(u0);
   ProgramResult result;
-  result.message = ByNlopt()(scaled, options, u0);
+  result.message = FunctionOf(options.method)(scaled, options, u0);
   const ScaledProgram::Point& best = scaled.best();
   result.evaluations = scaled.evaluations();
   result.defined = best.defined;

@@ -12,26 +12,27 @@ class ScaledProgram {
  public:
   /// The program's values and slopes at one point, in scaled variables.
   struct Point {
-    VectorXd u;
-    double f = 0;
-    VectorXd df, g;
-    MatrixXd dg;
-    bool defined = false;
+    VectorXd u;            ///< [n] variables, 0 at a lower bound, 1 at an upper one
+    double f = 0;          ///< the objective
+    VectorXd df, g;        ///< [n], [m]
+    MatrixXd dg;           ///< [m, n]
+    bool defined = false;  ///< the program has values here
   };
 
+  /// Keeps a reference; `feasibility` as ProgramOptions::feasibility.
   ScaledProgram(NonlinearProgram& program, double feasibility)
       : program_(program), feasibility_(feasibility) {}
 
-  int variables() const { return static_cast<int>(program_.lower().size()); }
-  int constraints() const { return program_.constraints(); }
-  double feasibility() const { return feasibility_; }
-  int evaluations() const { return evaluations_; }
-  const Point& best() const { return best_; }
-  bool IsFeasible(const Point& point) const;
+  int variables() const { return static_cast<int>(program_.lower().size()); }  ///< n
+  int constraints() const { return program_.constraints(); }                   ///< m
+  double feasibility() const { return feasibility_; }  ///< largest g that counts as zero
+  int evaluations() const { return evaluations_; }     ///< so far
+  const Point& best() const { return best_; }          ///< as ProgramResult describes it
+  bool IsFeasible(const Point& point) const;           ///< no g above feasibility()
 
-  const Point& At(const VectorXd& u);
-  VectorXd Unscaled(const VectorXd& u) const;
-  VectorXd Range() const { return program_.upper() - program_.lower(); }
+  const Point& At(const VectorXd& u);          ///< evaluates it, or gives the last one again
+  VectorXd Unscaled(const VectorXd& u) const;  ///< x of u
+  VectorXd Range() const { return program_.upper() - program_.lower(); }  ///< upper - lower [n]
 
  private:
   void Evaluate(const VectorXd& u);

@@ -1,9 +1,10 @@
-"""vmech sensitivities and vmech optimise against whole runs of vmech loads.
+"""vmech sensitivities and vmech optimise against whole runs of vmech loads, and published designs.
 
 Nothing of the derivatives is shared: the mechanism's file is changed as text, the loads are run
 anew, and their tables are read. usage: design_test.py VMECH EXAMPLES WORK
 """
 
+import cmath
 import csv
 import json
 import math
@@ -12,9 +13,11 @@ import re
 import shutil
 import subprocess
 import sys
+import time
 import unittest
 
 VMECH, EXAMPLES, WORK = sys.argv[1], pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3])
+STUDIES = EXAMPLES.parents[1] / "studies" / "examples"
 MECHANISM, STUDY = "slider-crank.yaml", "slider-crank-study.yaml"
 
 
@@ -177,14 +180,15 @@ motion: {{joint: lower, rpm: 10, turns: 0.25, steps: 8}}
         self.assertNotIn("not determined", asked.stdout)
 
 
+def design(name, *words):
+    """The rows of design.csv by name."""
+    done = run("optimise", *words, "--out", WORK / name)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return {row["name"]: row for row in rows(WORK / name / "design.csv")}
+
+
 class Optimise(unittest.TestCase):
     COUNTERWEIGHT = (r"(  crank:\n    mass: 0\.4\n    center_of_gravity: \[)(25)(, 0, 0\])", 25.0)
-
-    def design(self, name, *words):
-        """The rows of design.csv by name."""
-        done = run("optimise", *words, "--out", WORK / name)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return {row["name"]: row for row in rows(WORK / name / "design.csv")}
 
     def test_finds_the_counterweight_of_the_closed_form(self):
         # The force on the ground is linear in the place of the crank's centre: F = A + x B, so that
@@ -199,8 +203,8 @@ class Optimise(unittest.TestCase):
 
         best = -dot(A, B) / dot(B, B)
         folder.put(*self.COUNTERWEIGHT)
-        for method, delta in (("slsqp", 1e-4), ("mma", 1e-3)):
-            table = self.design("balanced", folder.path / STUDY, "--minimise", "ground.force.rms",
+        for method, delta in (("slsqp", 1e-4), ("mma", 1e-3), ("ipopt", 1e-4)):
+            table = design("balanced", folder.path / STUDY, "--minimise", "ground.force.rms",
                                 "--vary", "crank.center_of_gravity.x=-100..50",
                                 "--method", method)
             found = float(table["crank.center_of_gravity.x"]["after"])
@@ -211,7 +215,7 @@ class Optimise(unittest.TestCase):
 
     def test_keeps_what_it_must_and_writes_the_mechanism(self):
         folder = Folder("kept")
-        table = self.design("keeping", folder.path / STUDY, "--minimise", "main.drive",
+        table = design("keeping", folder.path / STUDY, "--minimise", "main.drive",
                             "--vary", "crank/pin.x=40..60", "--vary", "coupler.mass=0.2..0.5",
                             "--keep", "pin.life>=11600")
         self.assertAlmostEqual(float(table["pin.life"]["after"]), 11600, delta=0.01)
@@ -222,7 +226,7 @@ class Optimise(unittest.TestCase):
         self.assertLess(drive, float(table["main.drive"]["before"]))
 
     def test_gain_is_what_a_looser_limit_gives(self):
-        tables = [self.design(f"gain-{limit}", EXAMPLES / STUDY, "--minimise", "main.drive.rms",
+        tables = [design(f"gain-{limit}", EXAMPLES / STUDY, "--minimise", "main.drive.rms",
                               "--vary", "crank/pin.x=40..60", "--vary", "coupler.mass=0.2..0.5",
                               "--keep", f"pin.life>={limit}") for limit in (11600, 11590)]
         drives = [float(table["main.drive.rms"]["after"]) for table in tables]
@@ -231,7 +235,7 @@ class Optimise(unittest.TestCase):
 
     def test_stays_where_the_mechanism_can_turn(self):
         # The rod is 150 mm long: a crank as long cannot turn.
-        table = self.design("turning", EXAMPLES / STUDY, "--maximise", "main.drive.rms",
+        table = design("turning", EXAMPLES / STUDY, "--maximise", "main.drive.rms",
                             "--vary", "crank/pin.x=40..200")
         self.assertGreater(float(table["crank/pin.x"]["after"]), 50)
         self.assertLess(float(table["crank/pin.x"]["after"]), 150)
@@ -255,6 +259,128 @@ class Optimise(unittest.TestCase):
             done = run("optimise", EXAMPLES / STUDY, *words)
             self.assertEqual(done.returncode, code, done.stderr)
             self.assertIn(hint, done.stderr)
+
+
+class Published(unittest.TestCase):
+    """Optima that are known from elsewhere; each study says whose."""
+
+    METHODS = ("slsqp", "mma", "ipopt")
+
+    def test_force_balance_of_the_four_bar(self):
+        # The mass of the coupler, m3 with its centre at r3 of a3, stands for two at its pins; each
+        # is balanced on its own link: m2 r2 = -m3 (1 - r3/a3) a2, m4 r4 = -m3 r3/a3 a4.
+        crank, rocker = -1 * (1 - 600 / 1200) * 500 / 0.5, -1 * 600 / 1200 * 750 / 0.75
+        for method in self.METHODS:
+            table = design("force-balance", STUDIES / "balanced-four-bar-study.yaml",
+                           "--minimise", "ground.force.rms", "--method", method,
+                           "--vary", "crank.center_of_gravity.x=-1000..500",
+                           "--vary", "rocker.center_of_gravity.x=-1000..500")
+            force = table["ground.force.rms"]
+            with self.subTest(method=method):
+                self.assertLess(float(force["after"]), 1e-4 * float(force["before"]))
+                for name, best in (("crank", crank), ("rocker", rocker)):
+                    found = float(table[f"{name}.center_of_gravity.x"]["after"])
+                    self.assertAlmostEqual(found, best, delta=0.05)
+
+    def test_crank_rocker_of_best_transmission(self):
+        # Brodell and Soni's coupler for a swing of 60 deg and a least angle of 45 deg.
+        coupler = math.sqrt((1 - math.cos(math.radians(60))) / 2) / math.cos(math.radians(45))
+        rocker = math.sqrt((1 - coupler ** 2) / (1 - coupler ** 2 / 2))
+        table = design("transmission", STUDIES / "crank-rocker-study.yaml",
+                       "--minimise", "transmission", "--vary", "coupler=0.6..1.2",
+                       "--vary", f"rocker={rocker!r}..1.2")
+        self.assertAlmostEqual(float(table["transmission"]["after"]), 45, delta=0.02)
+        self.assertAlmostEqual(float(table["coupler"]["after"]), coupler, delta=1e-3)
+        self.assertAlmostEqual(float(table["rocker"]["after"]), rocker, delta=1e-6)
+
+    PATH = [STUDIES / "path-four-bar-study.yaml", "--minimise", "point.path.rms",
+            "--vary", "ground=1..10", "--vary", "crank=0.5..5", "--vary", "coupler=1..10",
+            "--vary", "rocker=1..10", "--vary", "along=-5..5", "--vary", "across=-5..5"]
+    POINTS = (3 + 3j, 2.759 + 3.363j, 2.372 + 3.663j, 1.890 + 3.862j, 1.355 + 3.943j)
+
+    def error_of(self, ground, crank, coupler, rocker, along, across):
+        """The sum of squares [mm^2], from the law of cosines."""
+        error = 0
+        for i, wanted in enumerate(self.POINTS):
+            pin = crank * cmath.exp(1j * math.radians(30 + 15 * i))
+            diagonal = ground - pin
+            cosine = ((coupler ** 2 + abs(diagonal) ** 2 - rocker ** 2)
+                      / (2 * coupler * abs(diagonal)))
+            turn = cmath.exp(1j * (cmath.phase(diagonal) + math.acos(cosine)))
+            error += abs(pin + (along + 1j * across) * turn - wanted) ** 2
+        return error
+
+    def test_path_of_five_points_with_their_timing(self):
+        table = design("path", *self.PATH)
+        best = {name: float(row["after"]) for name, row in table.items()}
+        error = 5 * (1e3 * best["point.path.rms"]) ** 2
+        lengths = [best[name] for name in ("ground", "crank", "coupler", "rocker", "along",
+                                           "across")]
+        self.assertAlmostEqual(error, self.error_of(*lengths), delta=1e-9)
+        # The least there is, by Levenberg and Marquardt's method from 300 starts: 7.416e-7 mm^2.
+        self.assertAlmostEqual(error, 7.4158e-7, delta=1e-9)
+
+    def test_paths_that_do_not_fit_are_refused(self):
+        text = (STUDIES / "path-four-bar-study.yaml").read_text(encoding="utf-8")
+        text = text.replace("path-four-bar.yaml", str(STUDIES / "path-four-bar.yaml"))
+        table = WORK / "wanted.csv"
+        table.write_text("t,x,y,z\n0,3,3,0\n1,2,2,0\n2,1,1,0\n3,0,0,0\n5,0,1,0\n", encoding="utf-8")
+        for passage, replacement, hint in (
+                ("[[3, 3, 0], ", "[", "there are 4 points, but the motion has 5 poses"),
+                ("  point: [", "  pont: [", "grasp 'pont' not found; did you mean 'point'"),
+                ("[3, 3, 0]", "[3, 3]", "3 numbers"),
+                (text[text.index("[[3, 3, 0]"):], f"{table}\n",
+                 "wanted.csv:6: t = 5 s, but pose 4 of the motion is at t = 4 s")):
+            self.assertIn(passage, text)
+            study = WORK / "wrong-path.yaml"
+            study.write_text(text.replace(passage, replacement), encoding="utf-8")
+            done = run("loads", study, "--out", WORK / "wrong-path")
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(hint, done.stderr)
+
+
+class Resumed(unittest.TestCase):
+    def interrupted(self, name, designs):
+        """A search that was killed after so many designs, or a few more."""
+        folder = WORK / name
+        shutil.rmtree(folder, ignore_errors=True)
+        words = ["optimise", *Published.PATH, "--out", folder]
+        state = folder / "search.json"
+        with subprocess.Popen([VMECH, *map(str, words)], stdout=subprocess.DEVNULL) as search:
+            while search.poll() is None:
+                if state.exists() and len(json.loads(state.read_bytes())["designs"]) >= designs:
+                    search.kill()
+                    break
+                time.sleep(1e-3)
+        self.assertTrue(state.exists(), "it ended before it was killed")
+        return folder, words
+
+    def test_goes_on_to_the_same_design(self):
+        folder, words = self.interrupted("killed", 5)
+        plain = run(*words)
+        self.assertEqual(plain.returncode, 2, plain.stdout)
+        self.assertIn("--resume goes on with it", plain.stderr)
+        resumed = run(*words, "--resume")
+        self.assertEqual(resumed.returncode, 0, resumed.stderr)
+        self.assertIn("The search goes on after", resumed.stdout)
+        self.assertFalse((folder / "search.json").exists())
+        design("at-once", *Published.PATH)
+        self.assertEqual((folder / "design.csv").read_bytes(),
+                         (WORK / "at-once" / "design.csv").read_bytes())
+
+    def test_of_another_question_is_refused(self):
+        folder, words = self.interrupted("another", 2)
+        state = folder / "search.json"
+        other = run(*words, "--resume", "--method", "mma")
+        self.assertEqual(other.returncode, 2, other.stdout)
+        self.assertIn("is the state of another search", other.stderr)
+        state.write_text(state.read_text(encoding="utf-8")[:-40], encoding="utf-8")
+        damaged = run(*words, "--resume")
+        self.assertEqual(damaged.returncode, 2, damaged.stdout)
+        self.assertIn("is damaged", damaged.stderr)
+        nowhere = run(*words[:-2], "--resume")
+        self.assertEqual(nowhere.returncode, 1, nowhere.stdout)
+        self.assertIn("--resume needs --out", nowhere.stderr)
 
 
 if __name__ == "__main__":

@@ -3,14 +3,17 @@
 Every command gives the same bytes for a file with parameters and for one with the numbers typed in.
 """
 
+import csv
 import json
 import pathlib
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
 import unittest
+import urllib.request
 
 VMECH = ""
 EXAMPLES = pathlib.Path()
@@ -70,6 +73,53 @@ class Parameters(unittest.TestCase):
         for file in ("out.yaml", "out.sdf", "out.xml"):
             self.expect_same("export", mechanism, "--out", file, files=(file,))
         self.expect_same("haptic", mechanism, "--free", "--seconds", "0.05", "-q")
+
+    def test_a_comparison_reads_its_mechanisms_with_what_is_set(self):
+        suite = ("vmech_suite: '1.0'\ntargets: {near: {kind: reachable, count: 3}}\n"
+                 "mechanisms: {slider-crank: {file: slider-crank.yaml, grasp: handle}}\n")
+        results = []
+        for folder, settings in (("named", ("--set", "crank=50")), ("typed", ())):
+            (self.folder / folder / "suite.yaml").write_text(suite, encoding="utf-8")
+            done = self.vmech(folder, "compare", "suite.yaml", "--solvers", "nullspace", "--jobs",
+                              "1", "--out", "compared", "-q", *settings)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            with open(self.folder / folder / "compared/results.csv", newline="",
+                      encoding="utf-8") as file:
+                results.append([{name: value for name, value in row.items()
+                                 if not name.startswith("time")} for row in csv.DictReader(file)])
+        self.assertEqual(len(results[0]), 3)
+        self.assertEqual(*results)
+
+    def test_a_simulation_is_of_the_mechanism_as_it_is_set(self):
+        study = ("vmech_study: '1.0'\nmechanism: slider-crank.yaml\n"
+                 "simulation: {duration: 0.02, steps: 5}\n")
+        for folder in ("named", "typed"):
+            (self.folder / folder / "falling.yaml").write_text(study, encoding="utf-8")
+        self.expect_same("simulate", "falling.yaml", "--out", "fell", "-q",
+                         files=("fell/loads.csv", "fell/motion.csv", "fell/energies.csv"))
+
+    def test_the_page_shows_the_mechanism_as_it_is_set(self):
+        typed = self.scene("typed", "slider-crank.yaml")
+        named = self.scene("named", "slider-crank.yaml", "--set", "crank=50")
+        other = self.scene("named", "slider-crank.yaml", "--set", "crank=45")
+        self.assertIn("crank", json.dumps(named.pop("design")))
+        for scene in (typed, other):
+            scene.pop("design", None)
+        self.assertEqual(named, typed)
+        self.assertNotEqual(other, typed)
+
+    def scene(self, folder, *arguments):
+        """What the page of vmech view draws."""
+        with subprocess.Popen([VMECH, "view", *arguments], cwd=self.folder / folder, text=True,
+                              stdout=subprocess.PIPE, stdin=subprocess.DEVNULL) as process:
+            try:
+                url = next(line for line in process.stdout if "http://" in line).strip()
+                with urllib.request.urlopen(url, timeout=30) as page:
+                    text = page.read().decode()
+            finally:
+                process.send_signal(signal.SIGINT)
+                process.communicate(timeout=30)
+        return json.loads(re.search(r'id="vmech-scene">(.*?)</script>', text, re.DOTALL)[1])
 
     def test_a_study_sets_parameters_and_states_them(self):
         results = [f"out/{name}.csv" for name in

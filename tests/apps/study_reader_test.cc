@@ -83,6 +83,13 @@ TEST(Sha256, OfTheExamplesOfTheStandard) {
             "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
+TEST_F(StudyReader, SaysOnceWhatIsWrongWithItsUnits) {
+  const std::string told = Refusal(Replaced(kStudy, "length: mm", "length: furlong"));
+  const size_t first = told.find("'furlong' is not a known unit of length");
+  ASSERT_NE(first, told.npos) << told;
+  EXPECT_EQ(told.find("furlong", first + 10), told.npos) << told;
+}
+
 TEST_F(StudyReader, RemembersTheFilesThatWereReadEachOnce) {
   const StudyFile study =
       Parse(Replaced(kStudy, "rule:", "  - {link: slider, table: gas.csv}\nrule:"));

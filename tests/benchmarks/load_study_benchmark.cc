@@ -2,6 +2,9 @@
 
 #include <benchmark/benchmark.h>
 
+#include <string>
+#include <vector>
+
 #include "benchmark_studies.h"
 #include "vmech/dynamics/loads/load_study.h"
 #include "vmech/dynamics/loads/prepare_study.h"
@@ -9,6 +12,8 @@
 #include "vmech/dynamics/loads/track_motion.h"
 #include "vmech/dynamics/sensitivity/load_derivatives.h"
 #include "vmech/dynamics/sensitivity/study_change.h"
+#include "vmech/studies/sensitivities.h"
+#include "vmech/studies/study_reader.h"
 
 namespace vmech {
 namespace {
@@ -53,6 +58,36 @@ void SliderCrankGradient(benchmark::State& state) {
   }
 }
 BENCHMARK(SliderCrankGradient)->Unit(benchmark::kMillisecond);
+
+/// The first parameters of a study that have derivatives.
+std::vector<StudyParameter> ParametersWithSlopes(const StudyFile& file, const StudyOutcome& outcome,
+                                                 const std::vector<Figure>& figures, size_t count) {
+  const Sensitivities all = FindSensitivities(file, outcome, figures, DimensionsOf(file, true));
+  std::vector<StudyParameter> parameters;
+  for (size_t p = 0; p < all.parameters.size() && parameters.size() < count; ++p) {
+    if (all.refusals[p].empty()) parameters.push_back(all.parameters[p]);
+  }
+  return parameters;
+}
+
+/// Figures of the study of the slider-crank, 720 poses, by 20 dimensions: values and derivatives.
+void SliderCrankFigures(benchmark::State& state, const std::vector<std::string>& names) {
+  const StudyFile file = ReadStudy(VMECH_EXAMPLES "/slider-crank-study.yaml");
+  const StudyOutcome outcome = RunStudy(file, {});
+  std::vector<Figure> figures;
+  for (const std::string& name : names) {
+    figures.push_back(FindFigure(FiguresOf(file, outcome), name));
+  }
+  const std::vector<StudyParameter> parameters = ParametersWithSlopes(file, outcome, figures, 20);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(FindSensitivities(file, outcome, figures, parameters));
+  }
+  state.counters["parameters"] = static_cast<double>(parameters.size());
+}
+BENCHMARK_CAPTURE(SliderCrankFigures, Peak, {"pin.force"})->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(SliderCrankFigures, Peaks, {"pin.force", "wrist.force", "main.drive"})
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(SliderCrankFigures, Rms, {"pin.force.rms"})->Unit(benchmark::kMillisecond);
 
 void WindowFourBarPoses(benchmark::State& state) {
   const LoadStudy study = WindowStudy(static_cast<int>(state.range(0)), 720);

@@ -24,6 +24,7 @@
 #include "vmech/hw_interface/rendering/mechanism_tick.h"
 #include "vmech/kinematics/inverse/hand_tracker.h"
 #include "vmech/solvers/backend.h"
+#include "vmech/studies/study_reader.h"
 
 namespace {
 
@@ -68,6 +69,12 @@ void RunLoads() {
   std::cout << result.BriefReport() << "\n";
   Expect("pin force x [N]", force.x(), -kMass * kArm * kSpeed * kSpeed, 1e-12);
   Expect("pin force y [N]", force.y(), kMass * kGravity, 1e-12);
+}
+
+/// A study that a file describes.
+vmech::LoadStudyResult Loads(const char* file) {
+  const vmech::StudyFile study = vmech::ReadStudy(file);  // throws FileErrors, with every error
+  return vmech::RunLoadStudy(study.study);
 }
 
 /// Three of a class: a vector grows, and its elements move.
@@ -175,10 +182,12 @@ void SolveByEveryBackend(const std::vector<std::string_view>& packages) {
 }  // namespace
 
 int main(int count, char** arguments) {
+  if (count < 2) return EXIT_FAILURE;
+  Expect("poses of a file", static_cast<double>(Loads(arguments[1]).poses.size()), 360, 0);
   RunLoads();
   Hold();
   RunSession();
-  SolveByEveryBackend({arguments + 1, arguments + count});
+  SolveByEveryBackend({arguments + 2, arguments + count});
   std::cout << (failures == 0 ? "all as expected\n" : "NOT as expected\n");
   return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -2,6 +2,7 @@
 files that a page shows whole are read: commands_test.py VMECH SOURCE [PAGE...]
 
 A page is gone through from above. A block below "Save this as `NAME`" is written to that file.
+Programs in Python are run, with the package of the build, if there is one.
 Lines with `$ ` in front are run, and what stands below them is what they print, to the last figure
 but for what rounding leaves and for times. Other lines that begin with `vmech` are run and have to
 succeed. A line of the output that is `...` stands for any number of lines.
@@ -104,6 +105,16 @@ class Desk:
         code = served.wait(timeout=60)
         return 0 if code == -signal.SIGINT else code, "".join(lines)
 
+    def run_python(self, text):
+        """What is wrong with a program; None also where it needs a package that is not built."""
+        python = os.environ.get("VMECH_GUIDES_PYTHON")
+        if python is None:
+            return None
+        self.provide(text)
+        done = subprocess.run([python, "-B", "-c", text], cwd=self.folder, env=self.environment,
+                              capture_output=True, text=True, timeout=120, check=False)
+        return None if done.returncode == 0 else f"this program fails:\n{done.stderr}"
+
     def provide(self, command):
         named = WRITTEN.sub("", command) if "--motion" not in command else command
         for name, how in GIVEN.items():
@@ -141,6 +152,11 @@ def page_problems(page, vmech, source, counts):
             if saved and (language or not text.startswith("$ ")):
                 desk.save(saved[1], text)
                 counts["files"] += 1
+            elif language == "python":
+                counts["programs"] += 1
+                what = desk.run_python(text)
+                if what:
+                    yield f"{where}: {what}"
             elif not language and page.name not in ELSEWHERE:
                 for command, shown in commands_of(text):
                     counts["commands"] += 1
@@ -152,7 +168,7 @@ def page_problems(page, vmech, source, counts):
 def main():
     vmech, source = (pathlib.Path(path).resolve() for path in sys.argv[1:3])
     chosen = [source / page for page in sys.argv[3:]] or pages.guides(source)
-    counts = dict.fromkeys(("blocks", "texts", "files", "commands"), 0)
+    counts = dict.fromkeys(("blocks", "texts", "files", "programs", "commands"), 0)
     problems = [problem for page in chosen
                 for problem in page_problems(page, vmech, source, counts)]
     print("\n".join(problems) or "hold: " +

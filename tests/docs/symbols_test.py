@@ -6,9 +6,9 @@ import pathlib
 import re
 import sys
 
-# Members without a comment of their own. Most are fields whose name and type say all, as `name` and
-# `mechanism` do, and accessors of what the constructor was given. Lower it as they are documented.
-MOST_MEMBERS = 1300
+# Members without a comment of their own: those of a declaration that Doxygen does not take apart,
+# as that of the three columns of an inertia. What is new is documented.
+MOST_MEMBERS = 10
 UNDOCUMENTED = re.compile(
     r"^(\S+:\d+): warning: (?:Member .* \(([a-z ]+)\) of (\w+) .*|(Compound) .*) is not documented",
     re.MULTILINE)

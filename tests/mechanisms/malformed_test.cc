@@ -183,6 +183,32 @@ const Malformed kJoints[] = {
     {"CutTwice", "cuts: [wrist]", "cuts: [wrist, wrist]", 38, "already cut"},
 };
 
+/// A block `parameters` in line 5, before the ground.
+Malformed WithParameters(const std::string& subject, const std::string& block,
+                         const std::string& message) {
+  return {subject, "ground: frame", "parameters: " + block + "\nground: frame", 5, message};
+}
+
+const Malformed kParameters[] = {
+    WithParameters("ParenthesisNotClosed", "{a: 2*(3 + 4}", "parameters.a: expected a number"),
+    WithParameters("OperatorWithoutOperand", "{a: 2*}", "parameters.a: expected a number"),
+    WithParameters("TwoNumbersInARow", "{a: 2 3}", "parameters.a: expected a number"),
+    WithParameters("UnknownFunction", "{a: sinh(1)}", "parameters.a"),
+    WithParameters("UnknownUnit", "{a: 3 furlong}", "parameters.a"),
+    WithParameters("AngleOfALength", "{a: sin(3 mm)}", "parameters.a"),
+    WithParameters("RootOfANegative", "{a: sqrt(-1)}", "parameters.a"),
+    WithParameters("NothingForAParameter", "{a: }", "parameters.a"),
+    WithParameters("EmptyName", "{'': 1}", "made of letters, digits and '_'"),
+    WithParameters("NameThatBeginsWithADigit", "{1a: 1}", "made of letters, digits and '_'"),
+    WithParameters("MapForAParameter", "{a: {b: 1}}", "expected a number or an expression"),
+    WithParameters("LongCircle", "{a: b, b: c, c: a}", "needs its own value"),
+    {"ParameterOfAnotherKind",
+     "ground: frame\nlinks:\n  frame:\n    anchors:\n      main:  {origin: [0, 0, 0]",
+     "parameters: {a: 3 kg}\nground: frame\nlinks:\n  frame:\n    anchors:\n      main:  {origin: "
+     "[a, 0, 0]",
+     10, "links.frame.anchors.main.origin[0]"},
+};
+
 std::string SubjectOf(const testing::TestParamInfo<Malformed>& info) {
   return info.param.subject;
 }
@@ -191,6 +217,7 @@ INSTANTIATE_TEST_SUITE_P(Syntax, MalformedFile, testing::ValuesIn(kSyntax), Subj
 INSTANTIATE_TEST_SUITE_P(Keys, MalformedFile, testing::ValuesIn(kKeysAndKinds), SubjectOf);
 INSTANTIATE_TEST_SUITE_P(Links, MalformedFile, testing::ValuesIn(kLinks), SubjectOf);
 INSTANTIATE_TEST_SUITE_P(Joints, MalformedFile, testing::ValuesIn(kJoints), SubjectOf);
+INSTANTIATE_TEST_SUITE_P(Parameters, MalformedFile, testing::ValuesIn(kParameters), SubjectOf);
 
 TEST(MalformedFiles, HaveAllTheirErrorsReportedInTheOrderOfTheLines) {
   std::string text = Replaced(kSliderCrank, "crank/pin, coupler/crank", "cranc/pin, coupler/crank");

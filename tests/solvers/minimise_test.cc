@@ -65,10 +65,12 @@ TEST_P(EveryMethod, SaysThatItIsDefinedNowhere) {
   EXPECT_FALSE(result.feasible);
 }
 
-INSTANTIATE_TEST_SUITE_P(Nlopt, EveryMethod,
-                         testing::Values(ProgramMethod::kSlsqp, ProgramMethod::kMma),
+INSTANTIATE_TEST_SUITE_P(Programs, EveryMethod,
+                         testing::Values(ProgramMethod::kSlsqp, ProgramMethod::kMma,
+                                         ProgramMethod::kIpopt),
                          [](const auto& info) {
-                           return info.param == ProgramMethod::kSlsqp ? "Slsqp" : "Mma";
+                           constexpr const char* kNames[] = {"Slsqp", "Mma", "Ipopt"};
+                           return kNames[static_cast<int>(info.param)];
                          });
 
 TEST(Minimise, RefusesAStartOutsideOfTheBounds) {

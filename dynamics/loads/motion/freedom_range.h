@@ -16,11 +16,11 @@ struct Extreme {
 
 /// How far and how fast a freedom of a joint moves.
 struct FreedomRange {
-  Extreme least, greatest;
+  Extreme least, greatest;          ///< of the coordinate, and when
   double largest_rate = 0;          ///< magnitude, of all poses [m/s] or [rad/s]
   double largest_acceleration = 0;  ///< [m/s^2] or [rad/s^2]
 
-  double stroke() const { return greatest.value - least.value; }
+  double stroke() const { return greatest.value - least.value; }  ///< between them [m] or [rad]
 };
 
 /// Between two poses at which the rate has different signs the coordinate is taken as the cubic
@@ -33,7 +33,7 @@ FreedomRange FindRange(const LoadStudy& study, const LoadStudyResult& result, in
 struct TimeRatio {
   double forward = 0;  ///< turn of the drive while the coordinate grows [rad]
   double back = 0;     ///< and while it falls [rad]
-  double ratio() const { return forward / back; }
+  double ratio() const { return forward / back; }  ///< above 1 the return is the faster
 };
 
 /// Of a joint between the ground and a link, with one freedom, that goes to and fro once in every

@@ -1,9 +1,7 @@
 #include "vmech/dynamics/loads/motion/transmission_angle.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 namespace vmech {
 namespace {
@@ -65,44 +63,28 @@ Posed AnchorInWorld(const Mechanism& mechanism, const PoseLoads& pose, int joint
   return pose.links[id.link].X_WL * mechanism.anchor(id).X_LA;
 }
 
-/// The loop at one pose, in the plane across n.
-class PlanarLoop {
- public:
-  PlanarLoop(const Mechanism& mechanism, const FourJoints& loop, const PoseLoads& pose) {
-    for (size_t i = 0; i < 4; ++i) {
-      const Posed X = AnchorInWorld(mechanism, pose, loop.joints[i]);
-      points_[i] = X.p;
-      axes_[i] = X.R.col(2);
-      turns_[i] = mechanism.joints[loop.joints[i]].type == JointType::kRevolute;
-      if (turns_[i]) normal_ = axes_[i];
-    }
+/// The loop at one pose.
+PlanarLoop<double> LoopAt(const Mechanism& mechanism, const FourJoints& loop,
+                          const PoseLoads& pose) {
+  PlanarLoop<double> at;
+  for (size_t i = 0; i < 4; ++i) {
+    const Posed X = AnchorInWorld(mechanism, pose, loop.joints[i]);
+    at.points[i] = X.p;
+    at.axes[i] = X.R.col(2);
+    at.turns[i] = mechanism.joints[loop.joints[i]].type == JointType::kRevolute;
   }
+  return at;
+}
 
-  bool IsPlanar() const {
-    for (size_t i = 0; i < 4; ++i) {
-      const double off = turns_[i] ? axes_[i].cross(normal_).norm() : axes_[i].dot(normal_);
-      if (std::abs(off) > kParallel) return false;
-    }
-    return turns_[1] || turns_[2];
+bool IsPlanar(const PlanarLoop<double>& loop) {
+  if (!loop.turns[1] && !loop.turns[2]) return false;
+  const Vector3d normal = loop.axes[loop.turns[2] ? 2 : 1];
+  for (size_t i = 0; i < 4; ++i) {
+    const double off = loop.turns[i] ? loop.axes[i].cross(normal).norm() : loop.axes[i].dot(normal);
+    if (std::abs(off) > kParallel) return false;
   }
-
-  double TransmissionAngle() const {
-    const Vector3d at = turns_[2] ? points_[2] : points_[1];
-    Vector3d force = points_[2] - points_[1];
-    if (!turns_[1]) force = normal_.cross(axes_[1]);
-    if (!turns_[2]) force = normal_.cross(axes_[2]);
-    force -= force.dot(normal_) * normal_;
-    const Vector3d velocity = turns_[3] ? Vector3d(normal_.cross(at - points_[3])) : axes_[3];
-    const double size = force.norm() * velocity.norm();
-    if (!(size > 0)) return std::numeric_limits<double>::quiet_NaN();
-    return std::asin(std::min(1.0, std::abs(force.dot(velocity)) / size));
-  }
-
- private:
-  std::array<Vector3d, 4> points_, axes_;
-  std::array<bool, 4> turns_{};
-  Vector3d normal_ = Vector3d::Zero();
-};
+  return true;
+}
 
 }  // namespace
 
@@ -111,14 +93,15 @@ std::optional<TransmissionAngle> FindTransmissionAngle(const LoadStudy& study,
   const Mechanism& mechanism = study.mechanism;
   const std::optional<FourJoints> loop = FindLoop(study);
   if (!loop || result.poses.empty() || result.poses.front().links.size() != 4) return {};
-  if (!PlanarLoop(mechanism, *loop, result.poses.front()).IsPlanar()) return {};
+  if (!IsPlanar(LoopAt(mechanism, *loop, result.poses.front()))) return {};
   const auto slides = [&](size_t i) {
     return mechanism.joints[loop->joints[i]].type == JointType::kPrismatic;
   };
-  TransmissionAngle found{loop->input, loop->coupler,          loop->output,
-                          slides(3),   slides(1) || slides(2), {}};
+  TransmissionAngle found{
+      loop->joints,           loop->input, loop->coupler, loop->output, slides(3),
+      slides(1) || slides(2), {}};
   for (const PoseLoads& pose : result.poses) {
-    found.angles.push_back(PlanarLoop(mechanism, *loop, pose).TransmissionAngle());
+    found.angles.push_back(LoopAt(mechanism, *loop, pose).TransmissionAngle());
     const double least = found.angles[found.least_pose];
     if (found.angles.back() < least - kRounding || std::isnan(least)) {
       found.least_pose = found.angles.size() - 1;

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <vector>
 
+#include "vmech/base/pose.h"
 #include "vmech/dynamics/loads/load_result.h"
 #include "vmech/dynamics/loads/load_study.h"
 
@@ -20,6 +24,7 @@ namespace vmech {
 /// that slides on one of its neighbours pushes across the slide, through its revolute. 90 degrees
 /// are best; at 0 nothing is passed on.
 struct TransmissionAngle {
+  std::array<int, 4> joints{};                ///< ground - input - coupler - output - ground
   int input = -1, coupler = -1, output = -1;  ///< links
   bool slides = false;                        ///< the output, on the ground
   bool coupler_slides = false;                ///< on the input or on the output
@@ -32,5 +37,31 @@ struct TransmissionAngle {
 /// coupler slide, or the motion of the links was not computed.
 std::optional<TransmissionAngle> FindTransmissionAngle(const LoadStudy& study,
                                                        const LoadStudyResult& result);
+
+/// The four joints of such a loop at one pose, in the order of TransmissionAngle::joints. T is
+/// double, or Dual to take a derivative along.
+template <typename T>
+struct PlanarLoop {
+  std::array<Vector3<T>, 4> points, axes;  ///< where they are, and their z axes, in the world
+  std::array<bool, 4> turns{};             ///< revolute, else prismatic
+
+  /// mu [rad]; not finite where v is zero.
+  T TransmissionAngle() const;
+};
+
+template <typename T>
+T PlanarLoop<T>::TransmissionAngle() const {
+  using std::abs, std::atan2;
+  const Vector3<T> normal = axes[turns[2] ? 2 : 1];
+  const Vector3<T> at = points[turns[2] ? 2 : 1];
+  Vector3<T> force = points[2] - points[1];
+  if (!turns[1]) force = normal.cross(axes[1]);
+  if (!turns[2]) force = normal.cross(axes[2]);
+  force -= force.dot(normal) * normal;
+  const Vector3<T> velocity = turns[3] ? Vector3<T>(normal.cross(at - points[3])) : axes[3];
+  const T along = abs(force.dot(velocity)), across = abs(force.cross(velocity).dot(normal));
+  if (!(along + across > T(0))) return T(std::numeric_limits<double>::quiet_NaN());
+  return atan2(along, across);
+}
 
 }  // namespace vmech

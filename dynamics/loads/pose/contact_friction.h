@@ -40,16 +40,16 @@ namespace vmech {
 
 /// The freedoms [first, first + count) of a joint that slide together.
 struct SlidingContact {
-  int first = 0;
-  int count = 0;
+  int first = 0;  ///< of the joint's freedoms
+  int count = 0;  ///< 1 to 3
 };
 
 /// The contacts of a joint: a universal joint has two, a weld none, the others one.
 struct SlidingContacts {
-  int count = 0;
-  std::array<SlidingContact, 2> contacts;
-  const SlidingContact* begin() const { return contacts.data(); }
-  const SlidingContact* end() const { return contacts.data() + count; }
+  int count = 0;                                                   ///< 0 to 2
+  std::array<SlidingContact, 2> contacts;                          ///< the first `count` of them
+  const SlidingContact* begin() const { return contacts.data(); }  ///< as a range
+  const SlidingContact* end() const { return contacts.data() + count; }  ///< behind the last
 };
 /// The contacts of a joint of a type.
 SlidingContacts ContactsOf(JointType type);

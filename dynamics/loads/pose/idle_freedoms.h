@@ -41,7 +41,7 @@ void SettleIdleFreedoms(const LoadModel& model, LoadWorkspace<T>* ws);
 /// not depend on where loops are cut.
 class IdlePositions {
  public:
-  explicit IdlePositions(const LoadModel& model) : model_(model) {}
+  explicit IdlePositions(const LoadModel& model) : model_(model) {}  ///< keeps a reference
   /// Takes the pose in ws as the one to come from.
   void Remember(const TreeWorkspace<double>& ws);
   /// Moves q along the idle freedoms until the above holds; ws is left at q, closed to `tolerance`.

@@ -10,9 +10,9 @@ namespace vmech {
 /// What a joint does and carries, in the axes of the anchor on its first link.
 template <typename T>
 struct JointLoad {
-  Wrench<T> W_F;        ///< what the first link exerts on the second, about the second anchor
-  Vector3<T> position;  ///< coordinates of its freedoms
-  Vector3<T> rate;
+  Wrench<T> W_F;            ///< what the first link exerts on the second, about the second anchor
+  Vector3<T> position;      ///< coordinates of its freedoms
+  Vector3<T> rate;          ///< of the coordinates [m/s, rad/s]
   Vector3<T> acceleration;  ///< of the coordinates, the slopes of `rate`
 };
 

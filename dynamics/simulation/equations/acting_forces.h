@@ -41,12 +41,13 @@ class ActingForces {
   std::vector<Vector3d> BesideSprings(const ConstrainedMotion& motion) const;
 
   // Of the last Evaluate.
-  double MotorForce(size_t motor) const { return motor_forces_[motor]; }
+  double MotorForce(size_t motor) const { return motor_forces_[motor]; }  ///< [N] or [N m]
   Wrenchd hand() const;  ///< on the mechanism at Go, world axes
   /// [joints] what motors exert along the joints' freedoms.
   const std::vector<Vector3d>& motors() const { return exerted_; }
   /// Power of motors, external wrenches and the hand; that is lost in dampers and friction [W].
   double SuppliedPower(const ConstrainedMotion& motion) const;
+  /// In dampers and friction, positive [W].
   double LostPower(const ConstrainedMotion& motion) const;
   /// Energy of the joints' springs [J].
   double SpringEnergy(const ConstrainedMotion& motion) const;

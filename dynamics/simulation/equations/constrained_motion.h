@@ -11,8 +11,8 @@ namespace vmech {
 /// The rate of one freedom of a joint as a linear function of v: an entry of it for a joint in the
 /// tree, CutJointRates for one that is cut.
 struct RateRow {
-  int v = -1;  ///< index in v, or
-  int loop = -1;
+  int v = -1;       ///< index in v, or
+  int loop = -1;    ///< index of a loop
   int freedom = 0;  ///< of that loop's cut joint
 };
 /// The row of the rate of a freedom.
@@ -38,7 +38,7 @@ class ConstrainedMotion {
 
   /// Rates that are held from now on; they need not be independent.
   void Hold(std::vector<RateRow> rows);
-  const std::vector<RateRow>& held() const noexcept { return rows_; }
+  const std::vector<RateRow>& held() const noexcept { return rows_; }  ///< as Hold was given them
 
   /// Takes coordinates [nq], whose quaternions are brought to unit length.
   void SetPose(const double* q) noexcept;
@@ -64,13 +64,15 @@ class ConstrainedMotion {
   /// the held rows alone. Leaves the pose set. Returns what is left.
   double Close(double tolerance, double* q) noexcept;
 
+  /// Independent velocities.
   int freedoms() const noexcept { return static_cast<int>(free_.size()); }
+  /// [nv, freedoms] the motions that loops and drives leave free
   const MatrixXd& N() const noexcept { return N_; }
   const MatrixXd& inertia() const noexcept { return A_; }       ///< N'M N [freedoms, freedoms]
   const MatrixXd& held_motions() const noexcept { return B_; }  ///< B [held, freedoms]
   // Of the last Accelerate: N'(forces - h - M a) [freedoms], and what B s' is to be [held].
-  const VectorXd& driving() const noexcept { return driving_; }
-  const VectorXd& held_slopes() const noexcept { return held_; }
+  const VectorXd& driving() const noexcept { return driving_; }   ///< [freedoms]
+  const VectorXd& held_slopes() const noexcept { return held_; }  ///< [held]
   /// The slope of a rate there.
   double SlopeOf(const RateRow& row) const noexcept;
   /// A rate at the velocities that there are.
@@ -78,7 +80,7 @@ class ConstrainedMotion {
 
   /// q, v, v', tree, inertias: as the functions above leave them.
   LoadWorkspace<double>& ws() noexcept { return ws_; }
-  const LoadWorkspace<double>& ws() const noexcept { return ws_; }
+  const LoadWorkspace<double>& ws() const noexcept { return ws_; }  ///< the same, to read
 
  private:
   void FindVelocityTerms() noexcept;

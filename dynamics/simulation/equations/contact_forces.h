@@ -12,12 +12,13 @@ using Eigen::VectorXd;
 
 /// Rates that something holds, and what it can exert on them.
 struct HeldContact {
+  /// What a contact can exert.
   enum class Kind {
     kGiven,     ///< whatever it takes
     kFriction,  ///< sum (F_i / limits_i)^2 <= 1
     kStop,      ///< side F <= 0
   };
-  Kind kind = Kind::kGiven;
+  Kind kind = Kind::kGiven;            ///< decides which of the following count
   int first = 0, count = 1;            ///< rows
   Vector3d limits = Vector3d::Zero();  ///< kFriction [N], [N m]
   int side = 0;                        ///< kStop: -1 at a lower limit, 1 at an upper one
@@ -25,7 +26,7 @@ struct HeldContact {
 
 /// Forces F along held rates, and what is left of the slopes of these, u = b + W F.
 struct ContactForces {
-  VectorXd F, u;
+  VectorXd F, u;  ///< [held] [N, N m]; [held] [m/s^2, rad/s^2]
 };
 
 /// The forces that hold as much as they can: u of given rows is zero; of friction it is zero, or

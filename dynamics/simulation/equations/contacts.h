@@ -18,8 +18,9 @@ class Contacts {
   /// @throws std::invalid_argument naming the joint that starts outside its limits.
   Contacts(const Simulation& simulation, const KinematicTree& tree);
 
+  /// No joint has dry friction or limits.
   bool empty() const { return frictions_.empty() && stops_.empty(); }
-  bool any_held() const;
+  bool any_held() const;  ///< something rests or is closed
 
   /// The held rates.
   std::vector<RateRow> Held() const;
@@ -41,21 +42,25 @@ class Contacts {
 
   /// A stop that is run into, and the rate at which it is left.
   struct Hit {
-    size_t stop = 0;
-    RateRow row;
+    size_t stop = 0;      ///< which one, of all
+    RateRow row;          ///< rate of its freedom
     double rate = 0;      ///< after it
     double pressing = 1;  ///< 1 at an upper limit, -1 at a lower one
   };
+  /// Stops that are reached at a speed into them.
   std::vector<Hit> FindHits(const ConstrainedMotion& motion) const;
+  /// It holds from now on.
   void CloseStop(const Hit& hit) { stops_[hit.stop].closed = hit.pressing > 0 ? 1 : -1; }
+  /// It holds already.
   bool IsClosed(const Hit& hit) const { return stops_[hit.stop].closed != 0; }
+  /// Joint and freedom of its limit.
   FreedomId FreedomOf(const Hit& hit) const { return stops_[hit.stop].at; }
 
   /// Friction rests where it does not slide; limits close at which a freedom stands. Needs joint
   /// positions and rates.
   void HoldAllAtRest(const ConstrainedMotion& motion);
-  void ReleaseFriction();
-  void OpenLimits();
+  void ReleaseFriction();  ///< all of it slides from now on
+  void OpenLimits();       ///< all limits that are closed
   /// After Accelerate with Held as the last rows: what cannot be held slips or opens. True if any.
   bool Release(const ConstrainedMotion& motion, int before);
 

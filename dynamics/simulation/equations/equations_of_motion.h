@@ -22,6 +22,7 @@ class EquationsOfMotion {
   /// Keeps a reference.
   explicit EquationsOfMotion(const PreparedSimulation& prepared);
 
+  /// Numbers in y.
   int size() const { return tree_.nq + tree_.nv + 2; }
   /// Writes f [size]. False if it is not finite, or at a singular pose, over which steps lead:
   /// loops that lose rank leave little more than rounding of how they bend there. From a singular
@@ -53,16 +54,17 @@ class EquationsOfMotion {
   /// Do loops lose rank at the pose?
   bool IsSingular() const;
 
-  const KinematicTree& tree() const { return tree_; }
-  ConstrainedMotion& motion() { return now_->motion; }
-  ActingForces& forces() { return now_->forces; }
-  Contacts& contacts() { return contacts_; }
-  const Contacts& contacts() const { return contacts_; }
+  const KinematicTree& tree() const { return tree_; }     ///< of the assembled mechanism
+  ConstrainedMotion& motion() { return now_->motion; }    ///< of the pose that Slopes was last at
+  ActingForces& forces() { return now_->forces; }         ///< at that pose
+  Contacts& contacts() { return contacts_; }              ///< what rests and what slides
+  const Contacts& contacts() const { return contacts_; }  ///< the same, to read
   /// Holds what the contacts hold from now on.
   void HoldContacts();
   /// Holds what rests at a state and what stands at limits, but for what slips or opens at once.
   /// Takes rates v [nv] as that allows. Needs joint positions and rates, as of Place.
   void FindContacts(double time, const double* q, double* v);
+  /// Freedoms that move as prescribed.
   int drives() const { return static_cast<int>(driven_.size()); }
   /// What a drive prescribes.
   MotionSample DriveAt(size_t drive, double time) const;
@@ -74,11 +76,11 @@ class EquationsOfMotion {
   }
   /// [joints] along the joints' freedoms beside springs and dampers: motors, friction, limits.
   std::vector<Vector3d> BesideSprings() const;
-  const LoadModel& model() const { return now_->model; }
-  double KineticEnergyHere() const;
-  double WeightEnergyHere() const;
+  const LoadModel& model() const { return now_->model; }  ///< what loads are computed with
+  double KineticEnergyHere() const;  ///< at the pose and rates of the last Slopes [J]
+  double WeightEnergyHere() const;   ///< there, against the reference height [J]
 
-  long evaluations = 0, singular_poses = 0, partitions = 1;
+  long evaluations = 0, singular_poses = 0, partitions = 1;  ///< how many there were
 
  private:
   /// What depends on the choice of independent freedoms.

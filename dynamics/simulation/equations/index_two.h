@@ -18,6 +18,7 @@ class IndexTwo {
   /// Keeps references. @throws std::invalid_argument if there is dry friction or a limit.
   IndexTwo(const PreparedSimulation& prepared, EquationsOfMotion* equations);
 
+  /// EquationsOfMotion's, and two multipliers to a constraint
   int size() const { return equations_.size() + 2 * constraints(); }
   /// y is that of EquationsOfMotion with room for the rest; chooses the basis there.
   void Start(double time, VectorXd* y, VectorXd* slopes);

@@ -18,23 +18,24 @@ class SmallMotions {
   /// @throws as PrepareSimulation.
   explicit SmallMotions(const Simulation& simulation);
 
-  const KinematicTree& tree() const { return equations_.tree(); }
-  const VectorXd& q() const { return q_; }
-  const PreparedSimulation& prepared() const { return prepared_; }
-  int freedoms() const { return static_cast<int>(scale_.size()); }
+  const KinematicTree& tree() const { return equations_.tree(); }  ///< of the assembled mechanism
+  const VectorXd& q() const { return q_; }  ///< [nq], the pose that motions are small about
+  const PreparedSimulation& prepared() const { return prepared_; }  ///< with loads and tolerance
+  int freedoms() const { return static_cast<int>(scale_.size()); }  ///< independent motions
   /// Velocities that the freedoms are, and what of each is one: 1 rad, or the characteristic
   /// length.
   std::vector<int> velocities() const;
-  const VectorXd& scale() const { return scale_; }
+  const VectorXd& scale() const { return scale_; }  ///< [freedoms] what of each counts as one
 
   /// The pose to which x moves q, loops closed. False if they do not close there.
   bool PoseAt(const VectorXd& x, VectorXd* q);
   /// That pose is the one to move from now on.
   bool MoveTo(const VectorXd& x);
 
+  /// [freedoms] N'(forces - h) at rates x' [freedoms]
   VectorXd Force(const VectorXd& q, const VectorXd& rates);
-  MatrixXd Stiffness();
-  MatrixXd Damping();
+  MatrixXd Stiffness();    ///< K = -dF/dx [freedoms, freedoms]
+  MatrixXd Damping();      ///< D = -dF/dx' [freedoms, freedoms]
   MatrixXd Inertia();      ///< N'M N
   MatrixXd FreeMotions();  ///< N [nv, freedoms]
 

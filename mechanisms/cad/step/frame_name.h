@@ -21,13 +21,14 @@ namespace vmech {
 /// planar, weld or fixed; of a grasp: rigid or point) and `_inv`, which turns the frame by half a
 /// turn about its x axis, so that z points the other way.
 struct FrameName {
+  /// By the prefix.
   enum class Role { kNone, kJoint, kAnchor, kGrasp };
-  Role role = Role::kNone;  ///< kNone: the name has no such prefix
-  std::string name;
-  std::optional<JointType> type;
-  GraspKind grasp = GraspKind::kRigid;
-  bool inverted = false;
-  bool prefer_cut = false;
+  Role role = Role::kNone;              ///< kNone: the name has no such prefix
+  std::string name;                     ///< of the joint or the grasp
+  std::optional<JointType> type;        ///< kJoint, kAnchor: where it is given
+  GraspKind grasp = GraspKind::kRigid;  ///< kGrasp
+  bool inverted = false;                ///< the frame is to be turned
+  bool prefer_cut = false;              ///< the joint is to be cut
   std::string error;  ///< what is wrong with it ("'hinge' is no type of joint ..."), or empty
 };
 

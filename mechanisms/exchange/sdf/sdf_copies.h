@@ -20,7 +20,7 @@ class SdfCopies {
   SdfCopies(const SdfCopies&) = delete;
   SdfCopies& operator=(const SdfCopies&) = delete;
 
-  const std::string& main() const { return main_; }
+  const std::string& main() const { return main_; }  ///< path of the copy of the first file
   /// The file behind a path that libsdformat tells; the main one for whatever is no copy.
   const std::filesystem::path& OriginalOf(const std::string& copy) const;
 

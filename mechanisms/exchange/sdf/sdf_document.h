@@ -18,20 +18,20 @@ struct SdfFile {
     size_t begin = 0, end = 0;  ///< bytes of the uri in the text
     int file = -1;              ///< what it names, by index
   };
-  std::filesystem::path path;
-  std::string text;
-  XmlElement root;
-  std::vector<Include> includes;
-  int expanded = 1;  ///< files that come of it, counted as often as they are included
+  std::filesystem::path path;     ///< absolute
+  std::string text;               ///< the bytes of the file
+  XmlElement root;                ///< its outermost element
+  std::vector<Include> includes;  ///< in the order of the text
+  int expanded = 1;               ///< files that come of it, counted as often as they are included
 };
 
 /// A file, the first, and those that it includes, each once.
 struct SdfDocument {
-  std::vector<SdfFile> files;
+  std::vector<SdfFile> files;  ///< the first is the one that was asked for
   /// Elements of which nothing is taken, "3 <visual>", in all files.
   std::vector<std::string> left_out;
 
-  const SdfFile& main() const { return files[0]; }
+  const SdfFile& main() const { return files[0]; }  ///< the file that was asked for
 };
 
 /// How many elements of a name ("link", "joint") a file has, with those of what it includes, as

@@ -12,10 +12,10 @@ namespace vmech {
 /// What stands in a URDF file, in SI units and radians, before anything is made of it.
 
 struct UrdfLink {
-  std::string name;
-  int line = 0;
-  MassProperties mass_properties;  ///< in the axes of the link, as written
-  bool has_inertial = false, has_inertia = false;
+  std::string name;                                ///< unique in the file
+  int line = 0;                                    ///< from 1
+  MassProperties mass_properties;                  ///< in the axes of the link, as written
+  bool has_inertial = false, has_inertia = false;  ///< elements of these names are there
 };
 
 /// The types of joints of URDF.
@@ -23,22 +23,22 @@ enum class UrdfJointType { kRevolute, kContinuous, kPrismatic, kPlanar, kFixed, 
 
 /// A joint as a URDF file has it.
 struct UrdfJoint {
-  std::string name, parent, child;
-  int line = 0;
-  UrdfJointType type = UrdfJointType::kFixed;
-  Posed X_PC;                         ///< child at zero, in the parent
-  Vector3d axis = Vector3d::UnitX();  ///< axes of the child, of any length but zero
-  bool has_limits = false;            ///< `lower` and `upper` are given
-  double lower = 0, upper = 0;        ///< [m] or [rad]
-  double damping = 0, friction = 0;   ///< [N s/m] or [N m s/rad], [N] or [N m]
-  std::string mimics;                 ///< the joint after which it moves; empty: none
+  std::string name, parent, child;             ///< names of the joint and of its links
+  int line = 0;                                ///< from 1
+  UrdfJointType type = UrdfJointType::kFixed;  ///< as written
+  Posed X_PC;                                  ///< child at zero, in the parent
+  Vector3d axis = Vector3d::UnitX();           ///< axes of the child, of any length but zero
+  bool has_limits = false;                     ///< `lower` and `upper` are given
+  double lower = 0, upper = 0;                 ///< [m] or [rad]
+  double damping = 0, friction = 0;            ///< [N s/m] or [N m s/rad], [N] or [N m]
+  std::string mimics;                          ///< the joint after which it moves; empty: none
 };
 
 /// A robot as a URDF file has it.
 struct UrdfRobot {
-  std::string name;
-  std::vector<UrdfLink> links;
-  std::vector<UrdfJoint> joints;
+  std::string name;               ///< of the robot
+  std::vector<UrdfLink> links;    ///< in the order of the file
+  std::vector<UrdfJoint> joints;  ///< in the order of the file
   /// What is not for a mechanism and is left out, "3 <visual>", in the order of the alphabet.
   std::vector<std::string> left_out;
 };

@@ -13,11 +13,11 @@ namespace vmech {
 
 /// An element of an XML file, with its place.
 struct XmlElement {
-  std::string name;
+  std::string name;  ///< of its tag
   std::string text;  ///< between its tags, without that of its children
-  std::vector<std::pair<std::string, std::string>> attributes;
-  std::vector<XmlElement> children;
-  int line = 0;         ///< of its tag, from 1
+  std::vector<std::pair<std::string, std::string>> attributes;  ///< names and values as written
+  std::vector<XmlElement> children;                             ///< in the order of the file
+  int line = 0;                                                 ///< of its tag, from 1
   size_t tag_end = 0;   ///< bytes from the head of the file to the end of its first tag
   size_t text_end = 0;  ///< and to the head of its last tag; the same if it has but one
 
@@ -38,13 +38,13 @@ XmlElement ParseXml(std::string_view text, const std::string& file);
 /// Collects what is wrong with XML files, to tell it in one go.
 class XmlErrors {
  public:
-  explicit XmlErrors(std::string file) : file_(std::move(file)) {}
+  explicit XmlErrors(std::string file) : file_(std::move(file)) {}  ///< as messages name it
 
-  void Add(int line, std::string message);
+  void Add(int line, std::string message);  ///< line from 1
   /// @throws FileErrors if there is anything to tell.
   void Throw() const;
-  const std::string& file() const { return file_; }
-  size_t size() const { return errors_.size(); }
+  const std::string& file() const { return file_; }  ///< as messages name it
+  size_t size() const { return errors_.size(); }     ///< messages so far
   /// There is as much as can be read at once; more is not kept.
   bool full() const { return errors_.size() >= kMost; }
 
@@ -65,7 +65,7 @@ class XmlErrors {
 /// Counts what is left out of a file, so that nothing is lost in silence.
 class LeftOut {
  public:
-  void Add(const std::string& what) { ++counts_[what]; }
+  void Add(const std::string& what) { ++counts_[what]; }  ///< one more of this description
   /// "3 <visual>", in the order of the alphabet; what is too much to read is summed up.
   std::vector<std::string> Texts() const;
 

@@ -12,17 +12,19 @@ namespace vmech {
 /// Writes XML, an element a line, indented. Texts and attributes are escaped.
 class XmlText {
  public:
+  /// Names and values, unescaped.
   using Attributes = std::vector<std::pair<std::string_view, std::string>>;
 
+  /// Writes `<tag attributes>`.
   void Open(std::string_view tag, const Attributes& attributes = {});
-  void Close();
+  void Close();  ///< closes the innermost open tag
   /// Writes `<tag attributes/>`.
   void Element(std::string_view tag, const Attributes& attributes);
   /// Writes `<tag attributes>text</tag>`.
   void Text(std::string_view tag, std::string_view text, const Attributes& attributes = {});
-  void Comment(std::string_view text);
+  void Comment(std::string_view text);  ///< writes `<!-- text -->`
 
-  const std::string& text() const { return text_; }
+  const std::string& text() const { return text_; }  ///< what was written so far
 
  private:
   void Begin(std::string_view tag, const Attributes& attributes);

@@ -9,7 +9,7 @@ namespace vmech {
 /// A slip that people make in YAML, where it is and what to do.
 struct YamlSlip {
   int line = 0, column = 0;  ///< from 1
-  std::string message;
+  std::string message;       ///< what is wrong and what to do
 };
 
 /// What is likely to have made a YAML parser stop at a line (from 1): a comment with `//`, a tab in
