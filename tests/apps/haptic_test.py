@@ -118,8 +118,8 @@ class Haptic(unittest.TestCase):
                               (("--master", "plugin:"), "plugin:LIBRARY"),
                               (("--force",), "--record")):
             with self.subTest(options=options):
-                error = self.run_vmech("haptic", EXAMPLES / "crank.yaml", "--free", *options, code=1)
-                self.assertIn(word, error.stderr)
+                said = self.run_vmech("haptic", EXAMPLES / "crank.yaml", "--free", *options, code=1)
+                self.assertIn(word, said.stderr)
 
     def test_an_old_recording_is_not_written_over(self):
         (self.folder / "hand.csv").write_text("precious", encoding="utf-8")
