@@ -42,13 +42,16 @@ IoStatus StatusOf(int result) noexcept {
 
 PluginMaster::PluginMaster(const std::filesystem::path& library, const std::string& parameters)
     : library_name_(library.string()), library_(dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL)) {
-  if (!library_) Fail(library_name_, dlerror());
+  if (!library_) {
+    Fail(library_name_,
+         fmt::format("{}; a shared library is wanted (docs/device-plugin.md)", dlerror()));
+  }
   const auto create =
       reinterpret_cast<decltype(&vmech_plugin_create)>(dlsym(library_, "vmech_plugin_create"));
   std::string problem;
   ErrorText error{};
   if (!create) {
-    problem = "it has no function vmech_plugin_create; see plugin.h";
+    problem = "it has no function vmech_plugin_create; see docs/device-plugin.md";
   } else if (create(parameters.c_str(), &plugin_, error.data(), error.size()) != 0) {
     problem = fmt::format("refuses '{}': {}", parameters, error.data());
   } else if (plugin_.version != VMECH_PLUGIN_VERSION) {

@@ -11,6 +11,15 @@ namespace {
 /// Over less than this the steps of encoders are taken for speed [s].
 constexpr double kShortest = 1e-3;
 
+/// The speed, squared, at which a force gives the power that is forgiven [W]. Slower, it gives the
+/// hand nothing that counts, and where a hand turns round, its direction swings.
+double SlowSpeed2(const Screw& F, const PassivityOptions& options) {
+  constexpr double kLeast = 1e-6;  // [N^2]
+  const double moment2 = Dot(F.angular, F.angular) / (options.lever * options.lever);
+  const double force2 = Dot(F.linear, F.linear) + moment2;
+  return options.forgiven * options.forgiven / std::max(force2, kLeast);
+}
+
 }  // namespace
 
 void PassivityOptions::Validate() const {
@@ -70,10 +79,11 @@ bool PassivityController::Control(Screw* F_Ho_D) const noexcept {
   Screw& F = *F_Ho_D;
   F = std::max(0.0, 1 - beyond / options_.largest_debt) * wanted;
   const double share = debt < options_.grace ? debt / options_.grace : 1;
-  const Screw V = mean_V_ + share * (V_ - mean_V_), WV = Scaled(weight_, V);
+  const Screw V = mean_V_ + share * share * (V_ - mean_V_), WV = Scaled(weight_, V);
   const double speed2 = Power(WV, V);
   if (speed2 >= kAtRest) {
-    const double driving = std::max(0.0, Power(F, V) / speed2);
+    const double driving =
+        std::max(0.0, Power(F, V)) / (speed2 + (1 - share) * SlowSpeed2(F, options_));
     const double alpha = std::min(debt / (period_ * speed2), max_damping_);
     F -= share * (driving + alpha) * WV;
   }

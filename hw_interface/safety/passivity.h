@@ -41,8 +41,8 @@ double MostDamping(double mass, const DeviceInfo& info) noexcept;
 /// slowly. While E < 0, by more than rounding, the wrench loses its part along the motion that
 /// would drive the hand, gains damping, and fades with what the debt has beyond the grace E_g,
 ///
-///   F <- f F - s (max(0, f F'V/V'WV) + alpha) W V,   W = diag(1, lever^2),
-///   s = min(1, -E/E_g),   f = 1 + min(0, E + E_g)/E_largest,
+///   F <- f F - s (max(0, f F'V)/(V'WV + (1 - s) v^2) + alpha) W V,   W = diag(1, lever^2),
+///   s = min(1, -E/E_g),   f = 1 + min(0, E + E_g)/E_largest,   f |F| v the power forgiven,
 ///
 /// alpha = -E / (T V'WV), at most what the handle's mass takes without being thrown back: m / (2 T
 /// + 4 delay), T not below a millisecond. V is the twist of the last sample, or over a millisecond;

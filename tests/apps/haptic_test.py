@@ -107,6 +107,20 @@ class Haptic(unittest.TestCase):
                     self.assertEqual(float(value), float(row[name]), name)
         self.assertIn("sound", self.run_vmech("replay", "hand.mcap", "--audit").stdout)
 
+    def test_options_that_mean_nothing_are_refused_by_name(self):
+        for options, word in ((("--seconds", "nan"), "--seconds: 'nan'"),
+                              (("--scale", "nan"), "--scale: 'nan'"),
+                              (("--home", "a,b,c"), "--home: 'a'"),
+                              (("--stiffness", 100), "--coupling paper"),
+                              (("--estimator", "kalman"), "--coupling paper"),
+                              (("--motion-scale", 0.01), "--motion-scale: makes"),
+                              (("--master", "udp:localhost:9"), "this machine is 127.0.0.1"),
+                              (("--master", "plugin:"), "plugin:LIBRARY"),
+                              (("--force",), "--record")):
+            with self.subTest(options=options):
+                said = self.run_vmech("haptic", EXAMPLES / "crank.yaml", "--free", *options, code=1)
+                self.assertIn(word, said.stderr)
+
     def test_an_old_recording_is_not_written_over(self):
         (self.folder / "hand.csv").write_text("precious", encoding="utf-8")
         error = self.hold("crank", "--seconds", 0.1, "--record", "hand.csv", code=2).stderr

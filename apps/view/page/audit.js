@@ -16,7 +16,8 @@ class Audit {
     const {motion} = this.view.scene;
     this.charts = motion.audit.charts.map(({title, unit, series}) => new Chart(this.view, {
       title, unit, axis: motion.axis, x: motion.axis.values, count: () => motion.count,
-      series: series.map(({name, values}) => ({name, at: (i) => values[i]}))}));
+      series: series.map(({name, values}, k) => (
+          {name, at: (i) => values[i], strong: k === 0 && series.length > 1}))}));
     this.plots.replaceChildren(...this.charts.map((chart) => chart.element));
     this.draw();
   }
