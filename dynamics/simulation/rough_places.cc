@@ -18,6 +18,9 @@ bool FindSlopes(EquationsOfMotion* equations, double time, const VectorXd& y, Ve
   return equations->Slopes(time, y.data(), slopes->data());
 }
 
+/// Beside this any speed counts [1/s].
+constexpr double kSlowest = 1e-9;
+
 /// By the fourth-order rule of Runge and Kutta, to `time` from a step later.
 bool StepBack(EquationsOfMotion* equations, double time, double step, const VectorXd& k1,
               VectorXd* y) {
@@ -42,7 +45,7 @@ struct Approach {
 bool FindSingularPose(EquationsOfMotion* equations, double time, const VectorXd& y,
                       Approach* approach) {
   constexpr double kShare = 0.25;  // of the distance, as freedoms move
-  constexpr double kVanishes = 1e-8, kOfItself = 0.05, kSlowest = 1e-9;
+  constexpr double kVanishes = 1e-8, kOfItself = 0.05;
   VectorXd behind = y, slopes;
   if (!FindSlopes(equations, time, y, &approach->slopes)) return false;
   const double here = equations->motion().smallest_pivot();
@@ -67,7 +70,7 @@ bool FindSingularPose(EquationsOfMotion* equations, double time, const VectorXd&
 bool Collocate(EquationsOfMotion* equations, double time, const Approach& approach,
                const VectorXd& y, Leap* leap) {
   constexpr int kIterations = 20;
-  constexpr double kSettled = 1e-13, kClose = 1e-7;
+  constexpr double kSettled = 1e-14, kRounding = 1e-8;  // of the state
   VectorXd stage = y, slopes;
   leap->slopes[0] = approach.slopes;
   for (int i = 1; i < Leap::kStages; ++i) {
@@ -81,11 +84,12 @@ bool Collocate(EquationsOfMotion* equations, double time, const Approach& approa
       const double at = time + Leap::kAt[i] * leap->step;
       leap->At(at, &stage);
       if (!FindSlopes(equations, at, stage, &slopes)) return false;
-      change = std::max(change, (slopes - leap->slopes[i]).cwiseAbs().maxCoeff() /
-                                    (1 + slopes.cwiseAbs().maxCoeff()));
+      const double fastest = equations->motion().ws().v.cwiseAbs().maxCoeff();
+      change = std::max(change, leap->step * (slopes - leap->slopes[i]).cwiseAbs().maxCoeff() /
+                                    std::max(fastest, kSlowest));
       leap->slopes[i] = slopes;
     }
-    if (change < kSettled || (change < kClose && change > 0.5 * before)) return true;
+    if (change < kSettled || (change < kRounding && change > 0.5 * before)) return true;
     before = change;
   }
   return false;
