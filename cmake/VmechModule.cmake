@@ -128,6 +128,13 @@ function(vmech_add_late_library name)
     endif()
   endforeach()
   target_include_directories(${target} PRIVATE ${include_root})
+  # A program may hold another version of a package under the same names, as one with Simbody does
+  # of SUNDIALS: a static library, of which nothing is seen from outside, stays what was linked.
+  foreach(library ${ARG_LIBS})
+    if(TARGET ${library}_static)
+      list(TRANSFORM ARG_LIBS REPLACE "^${library}$" "${library}_static")
+    endif()
+  endforeach()
   target_link_libraries(${target} PRIVATE ${ARG_LIBS} vmech_settings vmech_kernel_settings)
   # What it shares with the program, if that is linked statically, each has for itself.
   target_link_options(${target} PRIVATE LINKER:--exclude-libs,ALL)

@@ -35,6 +35,8 @@ class EnvelopeLdlt {
   void Factor();
   /// The smallest pivot relative to the terms in it; 0 if one was taken as zero.
   const T& smallest_pivot() const { return smallest_pivot_; }
+  /// 1 / D(i); 0 if the pivot was taken as zero.
+  const T& inverse_pivot(int i) const { return inverse_pivot_[i]; }
 
   /// x = A^-1 x.
   void Solve(T* x) const;

@@ -1,7 +1,14 @@
 #include "vmech/dynamics/simulation/rough_places.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "vmech/mechanisms/joint_type.h"
 
 namespace vmech {
 namespace {
@@ -10,6 +17,9 @@ bool FindSlopes(EquationsOfMotion* equations, double time, const VectorXd& y, Ve
   slopes->resize(y.size());
   return equations->Slopes(time, y.data(), slopes->data());
 }
+
+/// Beside this any speed counts [1/s].
+constexpr double kSlowest = 1e-9;
 
 /// By the fourth-order rule of Runge and Kutta, to `time` from a step later.
 bool StepBack(EquationsOfMotion* equations, double time, double step, const VectorXd& k1,
@@ -23,7 +33,88 @@ bool StepBack(EquationsOfMotion* equations, double time, double step, const Vect
   return found;
 }
 
+/// The way to where loops lose rank.
+struct Approach {
+  double time_left = 0;   ///< [s]; none if loops do not lose rank ahead
+  VectorXd slopes;        ///< here
+  VectorXd their_slopes;  ///< [1/s]
+};
+
+/// The pivot is the square of a distance, and a parabola of time near a singular pose: is there one
+/// ahead at which it vanishes?
+bool FindSingularPose(EquationsOfMotion* equations, double time, const VectorXd& y,
+                      Approach* approach) {
+  constexpr double kShare = 0.25;  // of the distance, as freedoms move
+  constexpr double kVanishes = 1e-8, kOfItself = 0.05;
+  VectorXd behind = y, slopes;
+  if (!FindSlopes(equations, time, y, &approach->slopes)) return false;
+  const double here = equations->motion().smallest_pivot();
+  const double speed = std::max(equations->motion().ws().v.cwiseAbs().maxCoeff(), kSlowest);
+  const double step = kShare * std::sqrt(here) / speed;
+  double pivots[2];
+  for (int k = 0; k < 2; ++k) {
+    const VectorXd& from = k == 0 ? approach->slopes : slopes;
+    if (!StepBack(equations, time - (k + 1) * step, step, VectorXd(from), &behind)) return false;
+    if (!FindSlopes(equations, time - (k + 1) * step, behind, &slopes)) return false;
+    pivots[k] = equations->motion().smallest_pivot();
+    if (k == 0) approach->their_slopes = (approach->slopes - slopes) / step;
+  }
+  const double rate = (3 * here - 4 * pivots[0] + pivots[1]) / (2 * step);
+  const double bend = (here - 2 * pivots[0] + pivots[1]) / (step * step);
+  if (!(rate < 0 && bend > 0)) return false;
+  approach->time_left = -rate / bend;
+  return here - 0.5 * rate * rate / bend < std::max(kVanishes, kOfItself * here);
+}
+
+/// From y over `step`. False if its stages do not settle, or meet a singular pose.
+bool Collocate(EquationsOfMotion* equations, double time, const Approach& approach,
+               const VectorXd& y, Leap* leap) {
+  constexpr int kIterations = 20;
+  constexpr double kSettled = 1e-14, kRounding = 1e-8;  // of the state
+  VectorXd stage = y, slopes;
+  leap->slopes[0] = approach.slopes;
+  for (int i = 1; i < Leap::kStages; ++i) {
+    const double ahead = Leap::kAt[i] * leap->step;
+    leap->slopes[i] = approach.slopes + ahead * approach.their_slopes;
+  }
+  double before = std::numeric_limits<double>::infinity();
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    double change = 0;
+    for (int i = 1; i < Leap::kStages; ++i) {
+      const double at = time + Leap::kAt[i] * leap->step;
+      leap->At(at, &stage);
+      if (!FindSlopes(equations, at, stage, &slopes)) return false;
+      const double fastest = equations->motion().ws().v.cwiseAbs().maxCoeff();
+      change = std::max(change, leap->step * (slopes - leap->slopes[i]).cwiseAbs().maxCoeff() /
+                                    std::max(fastest, kSlowest));
+      leap->slopes[i] = slopes;
+    }
+    if (change < kSettled || (change < kRounding && change > 0.5 * before)) return true;
+    before = change;
+  }
+  return false;
+}
+
 }  // namespace
+
+void Leap::At(double time, VectorXd* y) const {
+  // Integrals of the polynomials that are 1 at one stage and 0 at the others.
+  const double x = (time - from) / step;
+  for (int i = 0; i < kStages; ++i) {
+    double c[kStages] = {1, 0, 0, 0}, size = 1;
+    int degree = 0;
+    for (int j = 0; j < kStages; ++j) {
+      if (j == i) continue;
+      for (int k = ++degree; k > 0; --k) c[k] = c[k - 1] - kAt[j] * c[k];
+      c[0] *= -kAt[j];
+      size *= kAt[i] - kAt[j];
+    }
+    double integral = 0;
+    for (int k = kStages; k-- > 0;) integral = x * (c[k] / (k + 1) + integral);
+    if (i == 0) *y = start;
+    *y += step * integral / size * slopes[i];
+  }
+}
 
 bool NearSingularPose(EquationsOfMotion& equations, double step) {
   constexpr double kNextTo = 1e-7, kInReach = 1e-6, kCreeps = 0.1;
@@ -33,27 +124,57 @@ bool NearSingularPose(EquationsOfMotion& equations, double step) {
   return pivot < kNextTo || (pivot < kInReach && moved < kCreeps * std::sqrt(pivot));
 }
 
-bool LeapOverSingularPose(double end, EquationsOfMotion* equations, double* time, VectorXd* y) {
-  constexpr double kShortest = 1e-6, kLongest = 4e-3;  // [rad]
-  VectorXd slopes[4];
-  if (!FindSlopes(equations, *time, *y, &slopes[0])) return false;
+std::optional<Leap> LeapOverSingularPose(double time, const VectorXd& y,
+                                         EquationsOfMotion* equations) {
+  constexpr double kLongest = 0.05;            // [rad]
+  constexpr double kFirst = 2.2, kMore = 1.3;  // of the way to the pose
+  Approach approach;
+  if (!FindSingularPose(equations, time, y, &approach)) return std::nullopt;
+  equations->Place(time, y.data(), y.data() + equations->tree().nq);
   const double pivot = equations->motion().smallest_pivot();
-  const double speed = std::max(equations->motion().ws().v.cwiseAbs().maxCoeff(), 1e-9);
-  for (double step = kShortest / speed; step < kLongest / speed; step *= 2) {
-    VectorXd behind = *y, there;
-    for (int k = 1; k < 4; ++k) {
-      if (!StepBack(equations, *time - k * step, step, slopes[k - 1], &behind)) return false;
-      if (!FindSlopes(equations, *time - k * step, behind, &slopes[k])) return false;
+  const double speed = equations->motion().ws().v.cwiseAbs().maxCoeff();
+  // Far from the pose accelerations are known best; where they do not settle, nearer.
+  for (const bool nearest : {false, true}) {
+    equations->ComeNearest(nearest);
+    Leap leap{time, kFirst * approach.time_left, y, {}};
+    bool found = false;
+    for (; !found && leap.step * speed < kLongest; leap.step *= found ? 1 : kMore) {
+      found = Collocate(equations, time, approach, y, &leap) &&
+              equations->motion().smallest_pivot() >= pivot;
     }
-    behind = *y + step / 24 * (55 * slopes[0] - 59 * slopes[1] + 37 * slopes[2] - 9 * slopes[3]);
-    if (*time + step > end || !FindSlopes(equations, *time + step, behind, &there)) continue;
-    if (equations->motion().smallest_pivot() < pivot) continue;
-    if (step == kShortest / speed) return false;  // it moves away from it
-    *y = behind;
-    *time += step;
-    return true;
+    equations->ComeNearest(false);
+    if (found) return leap;
   }
-  return false;
+  return std::nullopt;
+}
+
+std::string DescribePlace(double time, const VectorXd& y, const DisplayUnits& units,
+                          EquationsOfMotion* equations) {
+  constexpr double kNextTo = 1e-5, kBeyondBounds = 1e5;
+  constexpr size_t kShown = 12;  // joints
+  const KinematicTree& tree = equations->tree();
+  const double* const v = y.data() + tree.nq;
+  const bool settles = equations->Evaluate(time, y.data(), v);
+  equations->Place(time, y.data(), v);
+  const LoadWorkspace<double>& ws = equations->motion().ws();
+  std::string text = "the accelerations change faster than steps can follow";
+  if (!settles) {
+    text = "friction in proportion to loads has no equilibrium: the mechanism locks";
+  } else if (!tree.loops.empty() && equations->motion().smallest_pivot() < kNextTo) {
+    text = "its loops lose rank: at this pose they do not decide how it moves on";
+  } else if (tree.nv > 0 && ws.v.cwiseAbs().maxCoeff() > kBeyondBounds) {
+    text = "it moves beyond all bounds";
+  }
+  text += ". There";
+  const std::vector<Joint>& joints = tree.mechanism.joints;
+  for (size_t j = 0, shown = 0; j < joints.size() && shown < kShown; ++j) {
+    if (joints[j].type == JointType::kSpherical) continue;
+    for (int k = 0; k < FreedomsOf(joints[j].type); ++k, ++shown) {
+      text += fmt::format("{} {} is at {}", shown > 0 ? "," : "", NameOfFreedom(joints[j], k),
+                          FormatCoordinate(units, joints[j], k, ws.loads[j].position[k]));
+    }
+  }
+  return text;
 }
 
 double FastestDecay(double time, const VectorXd& y, EquationsOfMotion* equations) {

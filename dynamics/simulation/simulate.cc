@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include "vmech/dynamics/simulation/equations/equations_of_motion.h"
 #include "vmech/dynamics/simulation/equations/index_two.h"
@@ -86,16 +87,22 @@ class Run {
   }
 
  private:
+  double start() const { return simulation_.times.front(); }
   double end() const { return simulation_.times.back(); }
 
   /// Within the last step.
   const double* StateAt(double time) {
-    integrator_->At(time, dense_.data());
+    if (leap_) {
+      leap_->At(time, &leapt_);
+      dense_.head(leapt_.size()) = leapt_;
+    } else {
+      integrator_->At(time, dense_.data());
+    }
     return dense_.data();
   }
 
   void FindStart() {
-    time_ = last_look_ = simulation_.times.front();
+    time_ = last_look_ = changed_at_ = start();
     const StartState start = FindStartState(prepared_, &equations_);
     result_.moved_rates = start.moved_rates;
     const KinematicTree& tree = equations_.tree();
@@ -151,39 +158,66 @@ class Run {
   }
 
   void TakeStep() {
-    const double from = time_;
-    if (!integrator_->Step(end())) {
+    if (integrator_->Step(end())) {
+      GoThrough(integrator_->time());
+    } else {
       const std::string why = integrator_->error();
       if (!TryAgain()) Stop(SimulationStatus::kFailed, DescribeFailure(why));
-      return;
     }
-    const SuddenEvents::Found found = events_.FindFirst(from, integrator_->time());
+  }
+
+  /// Through the last step, to its end at `to` or to what happens before.
+  void GoThrough(double to) {
+    const double from = time_;
+    const SuddenEvents::Found found = events_.FindFirst(from, std::min(to, end()));
     time_ = found.time;
-    integrator_->At(time_, y_.data());
+    StateAt(time_);
+    y_ = dense_;
     if (found.ends_run)
       Stop(SimulationStatus::kReached, "a coordinate that ends the run is reached");
     RecordUntil(time_);
+    const bool leapt = leap_.has_value();
+    bool near_singular = false;
+    leap_.reset();
     if (found.changes) {
       equations_.Close(time_, y_.data());
       events_.Pass(time_, &y_);
       Restart();
+      StopIfNothingElseHappens();
+    } else if (leapt) {
+      BringBack();
     } else {
-      GoOnFrom(from);
+      ReturnToLoops();
+      near_singular = NearSingularPose(equations_, time_ - from);
+      if (!near_singular) ChangeMethodIfStiff();
     }
     events_.LookAround(time_, y_);
+    if (near_singular && time_ < end() && result_.status == SimulationStatus::kNotRun) Leap();
   }
 
-  void GoOnFrom(double begin) {
-    ReturnToLoops();
-    if (NearSingularPose(equations_, time_ - begin)) {
-      Leap();
-    } else {
-      ChangeMethodIfStiff();
-    }
+  std::string DescribeFailure(const std::string& why) {
+    return fmt::format(
+        "the mechanism cannot be followed on ({}): {}; the run ends", why,
+        DescribePlace(time_, y_.head(equations_.size()), simulation_.units, &equations_));
   }
 
-  static std::string DescribeFailure(const std::string& why) {
-    return why + ": the mechanism cannot be followed on (it locks, or moves beyond all bounds)";
+  /// Contacts that change and change again while no time passes lead nowhere.
+  void StopIfNothingElseHappens() {
+    constexpr long kMany = 2000;
+    constexpr double kNoTime = 1e-6;  // of the run
+    if (++changes_ % kMany != 0) return;
+    const double passed = time_ - changed_at_;
+    changed_at_ = time_;
+    if (result_.status != SimulationStatus::kNotRun || passed > kNoTime * (end() - start())) return;
+    const FreedomId at = result_.events.empty() ? FreedomId{} : result_.events.back().at;
+    const Mechanism& mechanism = equations_.tree().mechanism;
+    Stop(SimulationStatus::kFailed,
+         fmt::format(
+             "contacts stick, slip, open and close {} times within {:.3g} s, last that of "
+             "'{}', and nothing else happens; give limits some restitution or none, or "
+             "friction to fewer joints",
+             kMany, passed,
+             at.joint < 0 ? "a drive" : NameOfFreedom(mechanism.joints[at.joint], at.freedom)));
   }
 
   /// After a step that has failed: over a singular pose, or with equations chosen anew.
@@ -196,10 +230,9 @@ class Run {
   }
 
   bool Leap() {
-    VectorXd state = y_.head(equations_.size());
-    if (!LeapOverSingularPose(end(), &equations_, &time_, &state)) return false;
-    y_.head(equations_.size()) = state;
-    BringBack();
+    leap_ = LeapOverSingularPose(time_, y_.head(equations_.size()), &equations_);
+    if (!leap_) return false;
+    GoThrough(leap_->from + leap_->step);
     return true;
   }
 
@@ -211,7 +244,6 @@ class Run {
     y_.segment(tree.nq, tree.nv) = equations_.motion().ws().v;
     ++statistics_.projections;
     Restart();
-    RecordUntil(time_);
   }
 
   /// Results that are due by then.
@@ -221,7 +253,7 @@ class Run {
       if (at == time_) {
         dense_ = y_;
       } else {
-        integrator_->At(at, dense_.data());
+        StateAt(at);
       }
       recorder_.Record(at, dense_.data());
       RefuseUnresisted();
@@ -256,8 +288,16 @@ class Run {
         std::max(statistics_.largest_rate_drift, equations_.RateDrift(y_.data() + tree.nq));
     if (equations_.ChoosesBadly()) equations_.ChooseFreedoms(y_.head(tree.nq));
     const bool worn = index_two_ && index_two_->ChoosesBadly(time_, y_.data());
-    if (drift <= options_.drift_tolerance && !worn) return;
+    if (drift <= LargestDrift() && !worn) return;
     BringBack();
+  }
+
+  /// Steps of the integrator drift by about their tolerance. To bring each of them back would make
+  /// it begin anew each time, of lowest order.
+  double LargestDrift() const {
+    constexpr double kSteps = 1000;
+    const double tolerance = std::max(options_.relative_tolerance, options_.absolute_tolerance);
+    return std::max(options_.drift_tolerance, kSteps * tolerance);
   }
 
   /// Adams takes steps that are short for what decays fastest, though it has long decayed: BDF does
@@ -307,11 +347,14 @@ class Run {
   std::unique_ptr<Integrator> integrator_;
   double time_ = 0;
   std::unique_ptr<IndexTwo> index_two_;
-  VectorXd y_, dense_, slopes_;
+  VectorXd y_, dense_, slopes_, leapt_;
+  std::optional<vmech::Leap> leap_;       ///< the last step was one
   size_t next_ = 0;                       ///< of the times
   long next_look_ = 100, looked_at_ = 0;  ///< steps at which stiffness is, and was, looked at
   double failed_at_ = -1;                 ///< when a step failed last [s]
   double last_look_ = 0;                  ///< when [s]
+  long changes_ = 0;                      ///< of contacts
+  double changed_at_ = 0;                 ///< when many of them had been [s]
 };
 
 }  // namespace

@@ -77,6 +77,17 @@ void DependentSolver<T>::Factor(const TreeWorkspace<T>& ws) {
 }
 
 template <typename T>
+T DependentSolver<T>::PivotBeside(const VectorXd& sizes) const {
+  using std::max;
+  T largest(0);
+  for (size_t i = 0; i < partition_.dependent.size(); ++i) {
+    largest =
+        max(largest, normal_.inverse_pivot(static_cast<int>(i)) * sizes[partition_.dependent[i]]);
+  }
+  return Select(smallest_pivot() > T(0), 1.0 / max(largest, T(1)), T(0));
+}
+
+template <typename T>
 void DependentSolver<T>::StartResidual(const TreeWorkspace<T>& ws, Target target) {
   for (size_t l = 0; l < residual_.size(); ++l) {
     switch (target) {

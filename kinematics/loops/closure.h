@@ -29,6 +29,9 @@ class DependentSolver {
   /// Dead centre: sin^2 of the angle by which the least independent dependent velocity is
   /// independent of the others; 0 if the loops do not determine it here.
   const T& smallest_pivot() const { return normal_.smallest_pivot(); }
+  /// The same beside given sizes [nv] in place of the columns' own, which may all but vanish: the
+  /// squared distance of a column of W C_u from the span of the others, over its size.
+  T PivotBeside(const VectorXd& sizes) const;
 
   /// One step of loop closure, C dq = e2 (paper eq. 4), on the dependent coordinates of q [nq].
   /// With C of the pose in ws it is Newton's; with C and factor of an earlier pose a chord step.

@@ -7,6 +7,8 @@
 #include "vmech/dynamics/loads/load_result.h"
 #include "vmech/dynamics/loads/load_study.h"
 #include "vmech/dynamics/loads/run_load_study.h"
+#include "vmech/dynamics/simulation/simulate.h"
+#include "vmech/dynamics/simulation/simulation.h"
 #include "vmech/mechanisms/files/reader.h"
 
 namespace vmech {
@@ -205,6 +207,22 @@ INSTANTIATE_TEST_SUITE_P(Examples, SimbodyAgreement, testing::ValuesIn(kCases),
                          [](const testing::TestParamInfo<PeerCase>& info) {
                            return std::string(info.param.name);
                          });
+
+// Simbody's library holds functions of an old SUNDIALS under the names of those that simulate.
+TEST(Simbody, LeavesSimulationsAlone) {
+  Simulation simulation;
+  simulation.mechanism = ReadMechanism(std::string(VMECH_EXAMPLES) + "/four-bar.yaml");
+  simulation.times = {0, 0.1};
+  SimulationOptions options;
+  options.loads = false;
+  for (const SimulationMethod method :
+       {SimulationMethod::kAdams, SimulationMethod::kBdf, SimulationMethod::kIdas}) {
+    options.method = method;
+    const SimulationResult result = Simulate(simulation, options);
+    EXPECT_EQ(result.status, SimulationStatus::kFinished) << result.message;
+    EXPECT_GT(result.V(1).norm(), 0.1);
+  }
+}
 
 }  // namespace
 }  // namespace vmech

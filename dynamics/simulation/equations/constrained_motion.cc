@@ -64,6 +64,8 @@ ConstrainedMotion::ConstrainedMotion(const LoadModel& model)
   }
   const VectorXd scale = VelocityScale(tree_);
   free_unit_ = scale(free_);
+  column_sizes_ = columns_here_ = VectorXd::Zero(nv);
+  largest_columns_ = scale.cwiseAbs2().cwiseInverse();
   least_inertia_ = model.no_inertia * free_unit_.cwiseAbs2().cwiseInverse();
   massless_.resize(f);
   if (open) M_ = MatrixXd::Zero(nv, nv);
@@ -99,6 +101,21 @@ void ConstrainedMotion::SetPose(const double* q) noexcept {
   FindInertia();
   FactorInertia();
   FactorHeld();
+}
+
+void ConstrainedMotion::MeasureColumns() noexcept {
+  columns_here_.setZero();
+  const Vector6d* column = ws_.tree.loop_columns.data();
+  for (const Loop& loop : tree_.loops) {
+    for (const LoopColumn& c : loop.columns) {
+      for (int i = 0; i < loop.rows; ++i) {
+        const double size = (*column)[i] / (IsLengthRow(loop.type, i) ? tree_.length : 1);
+        columns_here_[c.v] += size * size;
+      }
+      ++column;
+    }
+  }
+  column_sizes_ = column_sizes_.cwiseMax(columns_here_.cwiseMin(largest_columns_));
 }
 
 double ConstrainedMotion::closure() const noexcept {

@@ -44,8 +44,13 @@ class ConstrainedMotion {
   void SetPose(const double* q) noexcept;
   /// Of the loops there, dimensionless.
   double closure() const noexcept;
-  /// As DependentSolver::smallest_pivot: 0 where loops lose rank.
-  double smallest_pivot() const noexcept { return ws_.dependents.smallest_pivot(); }
+  /// As DependentSolver::PivotBeside the largest columns that there were: 0 where loops lose rank,
+  /// be it that a velocity moves nothing there; 1 far from there.
+  double smallest_pivot() const noexcept { return ws_.dependents.PivotBeside(column_sizes_); }
+  /// Remembers how large the loops' columns are at the pose, if larger than before.
+  void MeasureColumns() noexcept;
+  /// Goes on from what another one has measured.
+  void TakeColumnSizes(const ConstrainedMotion& other) { column_sizes_ = other.column_sizes_; }
 
   /// Takes v [nv] as far as loops and held rows allow: the nearest velocities in the metric of M.
   /// `rates`: of the held rows; null: zero.
@@ -97,6 +102,8 @@ class ConstrainedMotion {
   VectorXd least_inertia_;  ///< of each
   VectorXd free_unit_;      ///< 1 rad/s, or a characteristic length a second, of each
   VectorXd row_unit_;       ///< the same of the held rates
+  VectorXd column_sizes_;   ///< [nv] squares, dimensionless but for the velocity
+  VectorXd columns_here_, largest_columns_;  ///< the same at a pose; as far as they count
   std::vector<bool> massless_;
   MatrixXd M_, N_, MN_, A_;
   EnvelopeLdlt<double> inertia_factors_;  ///< of A, last freedoms first

@@ -27,11 +27,6 @@ double RateOf(const ConstrainedMotion& motion, const FreedomId& at) {
   return motion.ws().loads[at.joint].rate[at.freedom];
 }
 
-double Along(const Vector3d& way, const Vector3d& rate, const SlidingContact& freedoms) {
-  const auto [first, count] = freedoms;
-  return way.segment(first, count).dot(rate.segment(first, count));
-}
-
 double RestitutionAt(const Simulation& simulation, const FreedomId& at) {
   for (const LimitRebound& rebound : simulation.rebounds) {
     const bool same = rebound.at.joint == at.joint && rebound.at.freedom == at.freedom;
@@ -49,15 +44,15 @@ void RequireInside(const Joint& joint, int freedom) {
       NameOfFreedom(joint, freedom), start, joint.lower[freedom], joint.upper[freedom]));
 }
 
-/// Those freedoms of a contact that friction acts along, under any load: a tube may turn hard and
-/// shift freely.
-SlidingContact FreedomsThatRub(const Joint& joint, const SlidingContact& contact) {
+/// Those freedoms of a contact that friction acts along, under any load.
+std::vector<int> FreedomsThatRub(const Joint& joint, const SlidingContact& contact) {
   const Wrenchd any{Vector3d::Ones(), Vector3d::Ones()};
   const Vector3d limits = FrictionLimits(joint, any, Vector3d::Zero(), Vector3d::Zero());
-  int first = contact.first, end = contact.first + contact.count;
-  while (first < end && limits[first] == 0) ++first;
-  while (first < end && limits[end - 1] == 0) --end;
-  return {first, end - first};
+  std::vector<int> freedoms;
+  for (int k = contact.first; k < contact.first + contact.count; ++k) {
+    if (limits[k] != 0) freedoms.push_back(k);
+  }
+  return freedoms;
 }
 
 double LargestRate(const ConstrainedMotion& motion) {
@@ -71,12 +66,10 @@ Contacts::Contacts(const Simulation& simulation, const KinematicTree& tree) : tr
   for (size_t j = 0; j < joints.size(); ++j) {
     const int joint = static_cast<int>(j);
     for (const SlidingContact& contact : ContactsOf(joints[j].type)) {
-      const SlidingContact freedoms = FreedomsThatRub(joints[j], contact);
-      if (freedoms.count == 0) continue;
+      const std::vector<int> freedoms = FreedomsThatRub(joints[j], contact);
+      if (freedoms.empty()) continue;
       Friction friction{joint, joints[j].type, freedoms, {}};
-      for (int k = 0; k < freedoms.count; ++k) {
-        friction.rows.push_back(RateRowOf(tree, {joint, freedoms.first + k}));
-      }
+      for (const int k : freedoms) friction.rows.push_back(RateRowOf(tree, {joint, k}));
       frictions_.push_back(friction);
     }
     if (joints[j].type == JointType::kSpherical) continue;
@@ -88,6 +81,12 @@ Contacts::Contacts(const Simulation& simulation, const KinematicTree& tree) : tr
       stops_.push_back({at, RateRowOf(tree, at), lower, upper, RestitutionAt(simulation, at)});
     }
   }
+}
+
+Vector3d Contacts::Friction::RatesIn(const ConstrainedMotion& motion) const {
+  Vector3d rates = Vector3d::Zero();
+  for (const int k : freedoms) rates[k] = motion.ws().loads[joint].rate[k];
+  return rates;
 }
 
 bool Contacts::any_held() const {
@@ -114,11 +113,10 @@ void Contacts::SetSliding(ConstrainedMotion* motion) const {
   for (Vector3d& rates : ws.sliding) rates.setZero();
   for (const Friction& friction : frictions_) {
     if (friction.rests) continue;
-    const auto [first, count] = friction.freedoms;
-    auto rates = ws.sliding[friction.joint].segment(first, count);
     // Of a single freedom the sign stays until the next event, so that steps may look beyond it.
-    rates = friction.direction.segment(first, count);
-    if (count > 1) rates = kBegins * rates + ws.loads[friction.joint].rate.segment(first, count);
+    Vector3d rates = friction.direction;
+    if (friction.freedoms.size() > 1) rates = kBegins * rates + friction.RatesIn(*motion);
+    ws.sliding[friction.joint] += rates;
   }
 }
 
@@ -126,9 +124,9 @@ void Contacts::AddHeldForces(const ConstrainedMotion& motion, int before,
                              std::vector<Vector3d>* along) const {
   Eigen::Index row = before;
   for (const Friction& friction : frictions_) {
-    for (int k = 0; friction.rests && k < friction.freedoms.count; ++k) {
-      (*along)[friction.joint][friction.freedoms.first + k] += motion.held_forces()[row++];
-    }
+    if (!friction.rests) continue;
+    for (const int k : friction.freedoms)
+      (*along)[friction.joint][k] += motion.held_forces()[row++];
   }
   for (const Stop& stop : stops_) {
     if (stop.closed == 0) continue;
@@ -137,20 +135,17 @@ void Contacts::AddHeldForces(const ConstrainedMotion& motion, int before,
 }
 
 void Contacts::Watch(const ConstrainedMotion& motion) {
-  for (Friction& friction : frictions_) friction.last = motion.ws().loads[friction.joint].rate;
+  for (Friction& friction : frictions_) friction.last = friction.RatesIn(motion);
 }
 
 bool Contacts::ComesToRest(const ConstrainedMotion& motion) const {
   const double rounding = 1e-15 * LargestRate(motion);
   return std::any_of(frictions_.begin(), frictions_.end(), [&](const Friction& friction) {
     if (friction.rests) return false;
-    const auto [first, count] = friction.freedoms;
-    const Vector3d& rate = motion.ws().loads[friction.joint].rate;
-    const Vector3d& way = count == 1 ? friction.direction : friction.last;
+    const Vector3d& way = friction.freedoms.size() == 1 ? friction.direction : friction.last;
     // Rounding may have left it behind its way; then it must go further back.
-    const double from = std::min(0.0, Along(way, friction.last, friction.freedoms));
-    const double size = way.segment(first, count).norm();
-    return Along(way, rate, friction.freedoms) < from - rounding * size;
+    const double from = std::min(0.0, way.dot(friction.last));
+    return way.dot(friction.RatesIn(motion)) < from - rounding * way.norm();
   });
 }
 
@@ -188,12 +183,12 @@ std::vector<HeldContact> Contacts::HeldContacts(const ConstrainedMotion& motion,
   int row = before;
   for (const Friction& friction : frictions_) {
     if (!friction.rests) continue;
-    const auto [first, count] = friction.freedoms;
+    const int count = static_cast<int>(friction.freedoms.size());
     const JointLoad<double>& load = motion.ws().loads[friction.joint];
     const Vector3d limits = FrictionLimits(tree_.mechanism.joints[friction.joint], load.W_F,
                                            load.position, Vector3d::Zero());
     HeldContact contact{HeldContact::Kind::kFriction, row, count};
-    contact.limits.head(count) = limits.segment(first, count);
+    for (int k = 0; k < count; ++k) contact.limits[k] = limits[friction.freedoms[k]];
     held.push_back(contact);
     row += count;
   }
@@ -234,8 +229,8 @@ bool Contacts::Release(const ConstrainedMotion& motion, int before) {
   Eigen::Index row = before;
   bool released = false;
   ForEachHeld([&](Friction* friction, Stop* stop) {
-    const int count = friction ? friction->freedoms.count : 1;
-    const auto slopes = u.segment(row, count);
+    const Eigen::Index count = friction ? std::ssize(friction->freedoms) : 1;
+    const VectorXd slopes = u.segment(row, count);
     row += count;
     if (slopes.isZero(0)) return;
     released = true;
@@ -243,7 +238,7 @@ bool Contacts::Release(const ConstrainedMotion& motion, int before) {
     if (!friction) return;
     friction->rests = false;
     friction->direction.setZero();
-    friction->direction.segment(friction->freedoms.first, count) = slopes.normalized();
+    friction->direction(friction->freedoms) = slopes.normalized();
     friction->last = friction->direction;
   });
   return released;
@@ -252,15 +247,10 @@ bool Contacts::Release(const ConstrainedMotion& motion, int before) {
 void Contacts::HoldAllAtRest(const ConstrainedMotion& motion) {
   const double slowest = kNoRate * (1 + LargestRate(motion));
   for (Friction& friction : frictions_) {
-    const auto [first, count] = friction.freedoms;
-    Vector3d rate = Vector3d::Zero();
-    rate.segment(first, count) = motion.ws().loads[friction.joint].rate.segment(first, count);
-    const Vector3d sliding = SlidingRates(friction.type, rate, slowest, tree_.length);
-    friction.rests = sliding.segment(first, count).isZero(0);
+    friction.last = friction.RatesIn(motion);
+    friction.rests = SlidingRates(friction.type, friction.last, slowest, tree_.length).isZero(0);
     friction.direction.setZero();
-    if (friction.rests) continue;
-    friction.direction.segment(first, count) = rate.segment(first, count).normalized();
-    friction.last = rate;
+    if (!friction.rests) friction.direction = friction.last.normalized();
   }
   for (Stop& stop : stops_) {
     if (std::abs(RateOf(motion, stop.at)) > slowest) continue;
@@ -286,7 +276,7 @@ void Contacts::Compare(const Contacts& after, double time, const ConstrainedMoti
   };
   for (size_t i = 0; i < frictions_.size(); ++i) {
     const Friction& now = after.frictions_[i];
-    const FreedomId at{now.joint, now.freedoms.first};
+    const FreedomId at{now.joint, now.freedoms.front()};
     if (now.rests != frictions_[i].rests) add(now.rests ? Kind::kSticks : Kind::kSlips, at);
   }
   for (size_t i = 0; i < stops_.size(); ++i) {

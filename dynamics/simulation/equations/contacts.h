@@ -72,11 +72,15 @@ class Contacts {
   struct Friction {
     int joint = -1;
     JointType type = JointType::kRevolute;
-    SlidingContact freedoms;
-    std::vector<RateRow> rows;
+    /// The freedoms of the joint that friction acts along. A ball may turn hard about two axes, and
+    /// freely about the third: it rests where it turns about that alone.
+    std::vector<int> freedoms;
+    std::vector<RateRow> rows;  ///< of each
     bool rests = false;
+    /// The rates of these freedoms, zero of the others.
+    Vector3d RatesIn(const ConstrainedMotion& motion) const;
     Vector3d direction = Vector3d::Zero();  ///< of its sliding as it began, by freedom of the joint
-    Vector3d last = Vector3d::Zero();       ///< rates at Watch
+    Vector3d last = Vector3d::Zero();       ///< RatesIn at Watch
   };
   struct Stop {
     FreedomId at;

@@ -19,6 +19,8 @@ namespace {
 /// inverse root, is closed before anything else.
 constexpr double kSingular = 1e-8;
 constexpr double kNearlySingular = 1e-2;
+/// As near as the few evaluations of a leap may come.
+constexpr double kNearest = 1e-9;
 /// Dimensionless pivots at a singular pose that count as zero.
 constexpr double kSingularRank = 1e-4;
 /// A choice of freedoms is bad at this share of its best pivot.
@@ -48,6 +50,7 @@ EquationsOfMotion::EquationsOfMotion(const PreparedSimulation& prepared)
       now_(regular_.get()) {
   HoldContacts();
   regular_->motion.SetPose(prepared.mobility.q_general.data());
+  regular_->motion.MeasureColumns();
   regular_->best_pivot = regular_->motion.smallest_pivot();
 }
 
@@ -97,6 +100,7 @@ std::unique_ptr<EquationsOfMotion::Choice> EquationsOfMotion::MakeChoice(const V
   auto choice =
       std::make_unique<Choice>(prepared_, vmech::ChooseFreedoms(tree_, q, driven_, tolerance));
   choice->motion.Hold(now_->motion.held());
+  choice->motion.TakeColumnSizes(regular_->motion);
   choice->motion.SetPose(q.data());
   choice->best_pivot = choice->motion.smallest_pivot();
   return choice;
@@ -142,8 +146,9 @@ void EquationsOfMotion::SetPose(const double* q) {
   leads_over_ = false;
   if (tree_.loops.empty()) return;
   CloseIfNearlySingular();
-  leads_over_ = now_->motion.smallest_pivot() < kSingular && avoids_singular_;
-  if (now_->motion.smallest_pivot() >= kSingular || leads_over_) return;
+  const bool singular = now_->motion.smallest_pivot() < Nearest();
+  leads_over_ = singular && avoids_singular_;
+  if (!singular || leads_over_) return;
   // More motions are free at this pose: what loops do not decide, inertia does.
   ++singular_poses;
   singular_ = MakeChoice(now_->motion.ws().q, kSingularRank);
@@ -151,10 +156,15 @@ void EquationsOfMotion::SetPose(const double* q) {
   now_ = singular_.get();
 }
 
+/// The pivot below which a pose is taken as singular.
+double EquationsOfMotion::Nearest() const {
+  return comes_nearest_ ? kNearest : kSingular;
+}
+
 void EquationsOfMotion::CloseIfNearlySingular() {
   constexpr double kClosed = 1e-15;
   const double pivot = now_->motion.smallest_pivot();
-  if (pivot >= kNearlySingular || pivot < kSingular) return;
+  if (pivot >= kNearlySingular || pivot < Nearest()) return;
   const VectorXd& q = now_->motion.ws().q;
   closed_.assign(q.begin(), q.end());
   now_->motion.Close(kClosed, closed_.data());
@@ -162,6 +172,7 @@ void EquationsOfMotion::CloseIfNearlySingular() {
 
 void EquationsOfMotion::Place(double time, const double* q, const double* v) {
   SetPose(q);
+  regular_->motion.MeasureColumns();
   from_singular_ = now_ == singular_.get();
   FindDriveMotion(time);
   now_->motion.SetVelocities(v, held_rates_.data());

@@ -80,6 +80,9 @@ class EquationsOfMotion {
   double KineticEnergyHere() const;  ///< at the pose and rates of the last Slopes [J]
   double WeightEnergyHere() const;   ///< there, against the reference height [J]
 
+  /// From now on singular poses may be evaluated nearer than an integrator should come to them.
+  void ComeNearest(bool comes) { comes_nearest_ = comes; }
+
   long evaluations = 0, singular_poses = 0, partitions = 1;  ///< how many there were
 
  private:
@@ -99,6 +102,7 @@ class EquationsOfMotion {
   bool AccelerateUnderLoad();
   void SetPose(const double* q);
   void CloseIfNearlySingular();
+  double Nearest() const;
 
   const PreparedSimulation& prepared_;
   const KinematicTree& tree_;
@@ -115,6 +119,7 @@ class EquationsOfMotion {
   bool from_singular_ = false;    ///< the state that steps go on from is at a singular pose
   bool avoids_singular_ = false;  ///< evaluations there are not wanted, and
   bool leads_over_ = false;       ///< this one is such
+  bool comes_nearest_ = false;    ///< ComeNearest
 };
 
 }  // namespace vmech
