@@ -320,6 +320,36 @@ class Published(unittest.TestCase):
         # The least there is, by Levenberg and Marquardt's method from 300 starts: 7.416e-7 mm^2.
         self.assertAlmostEqual(error, 7.4158e-7, delta=1e-9)
 
+    FIRST = {"ground": 5.0, "crank": 2.0, "coupler": 5.0, "rocker": 4.0, "along": 2.0,
+             "across": 1.0}
+
+    @staticmethod
+    def deviation_of(ground, crank, coupler, rocker, **_):
+        """How far the transmission angle is from a right angle at most [deg], as above."""
+        worst = 0
+        for i in range(5):
+            diagonal = abs(ground - crank * cmath.exp(1j * math.radians(30 + 15 * i)))
+            cosine = (coupler ** 2 + rocker ** 2 - diagonal ** 2) / (2 * coupler * rocker)
+            worst = max(worst, abs(90 - math.degrees(math.acos(cosine))))
+        return worst
+
+    def test_slopes_of_path_and_transmission_are_those_of_the_closed_form(self):
+        done = run("sensitivities", STUDIES / "path-four-bar-study.yaml", "--of",
+                   "point.path.rms,transmission", "--by", ",".join(self.FIRST), "--out",
+                   WORK / "path-slopes")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        closed = {"point.path.rms": lambda v: 1e-3 * math.sqrt(self.error_of(**v) / 5),
+                  "transmission": lambda v: self.deviation_of(**v)}
+        for row in rows(WORK / "path-slopes" / "sensitivities.csv"):
+            value, name, step = closed[row["figure"]], row["parameter"], 1e-3
+            at = [value({**self.FIRST, name: self.FIRST[name] + k * step})
+                  for k in (-2, -1, 1, 2)]
+            with self.subTest(figure=row["figure"], parameter=name):
+                self.assertAlmostEqual(float(row["value"]) / value(self.FIRST), 1, delta=1e-9)
+                self.assertAlmostEqual(float(row["slope"]) / value(self.FIRST),
+                                       (8 * (at[2] - at[1]) - (at[3] - at[0])) / (12 * step)
+                                       / value(self.FIRST), delta=1e-7)
+
     def test_paths_that_do_not_fit_are_refused(self):
         text = (STUDIES / "path-four-bar-study.yaml").read_text(encoding="utf-8")
         text = text.replace("path-four-bar.yaml", str(STUDIES / "path-four-bar.yaml"))
@@ -330,11 +360,11 @@ class Published(unittest.TestCase):
                 ("  point: [", "  pont: [", "grasp 'pont' not found; did you mean 'point'"),
                 ("[3, 3, 0]", "[3, 3]", "3 numbers"),
                 (text[text.index("[[3, 3, 0]"):], f"{table}\n",
-                 "wanted.csv:6: t = 5 s, but pose 4 of the motion is at t = 4 s")):
+                 "t = 5 s, but pose 4 of the motion is at t = 4 s")):
             self.assertIn(passage, text)
             study = WORK / "wrong-path.yaml"
             study.write_text(text.replace(passage, replacement), encoding="utf-8")
-            done = run("loads", study, "--out", WORK / "wrong-path")
+            done = run("sensitivities", study)
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn(hint, done.stderr)
 

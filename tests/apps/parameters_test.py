@@ -102,9 +102,9 @@ class Parameters(unittest.TestCase):
         typed = self.scene("typed", "slider-crank.yaml")
         named = self.scene("named", "slider-crank.yaml", "--set", "crank=50")
         other = self.scene("named", "slider-crank.yaml", "--set", "crank=45")
-        self.assertIn("crank", json.dumps(named.pop("design")))
-        for scene in (typed, other):
-            scene.pop("design", None)
+        self.assertIn("crank", json.dumps(named["session"]["parameters"]))
+        for scene in (named, typed, other):
+            scene["session"].pop("parameters", None)
         self.assertEqual(named, typed)
         self.assertNotEqual(other, typed)
 

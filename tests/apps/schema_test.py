@@ -18,6 +18,7 @@ BASE = {
     "bearings": {"main": {"positions": [-15, 15], "locating": 0, "shaft": [15, 30], "housing": 60,
                           "life_hours": 10000, "pair_life_hours": 6000, "reliability": 90,
                           "static_safety": 1.5}},
+    "paths": {"handle": "wanted.csv", "point": [[0, 1, 2], ["crank", 0, "2*crank"]]},
 }
 
 MALFORMED = [
@@ -35,6 +36,7 @@ MALFORMED = [
     ("bearings.main.shaft", 15), ("bearings.main.housing", 0), ("bearings.main.reliability", 50),
     ("bearings.main.static_safety", 0), ("bearings.main.pair_life_hours", -1),
     ("motion.0.freedom", 0), ("motion.0.freedom", "rw"), ("bearings.main.lubrication", "water"),
+    ("paths", []), ("paths.handle", 3), ("paths.point", []), ("paths.point.0", [1, 2]),
 ]
 
 

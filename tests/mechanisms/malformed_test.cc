@@ -190,23 +190,27 @@ Malformed WithParameters(const std::string& subject, const std::string& block,
 }
 
 const Malformed kParameters[] = {
-    WithParameters("ParenthesisNotClosed", "{a: 2*(3 + 4}", "parameters.a: expected a number"),
-    WithParameters("OperatorWithoutOperand", "{a: 2*}", "parameters.a: expected a number"),
-    WithParameters("TwoNumbersInARow", "{a: 2 3}", "parameters.a: expected a number"),
-    WithParameters("UnknownFunction", "{a: sinh(1)}", "parameters.a"),
-    WithParameters("UnknownUnit", "{a: 3 furlong}", "parameters.a"),
-    WithParameters("AngleOfALength", "{a: sin(3 mm)}", "parameters.a"),
-    WithParameters("RootOfANegative", "{a: sqrt(-1)}", "parameters.a"),
-    WithParameters("NothingForAParameter", "{a: }", "parameters.a"),
+    WithParameters("ParenthesisNotClosed", "{a: 2*(3 + 4}",
+                   "parameters.a: expected a number, not '2*(3 + 4': a ')' is missing"),
+    WithParameters("OperatorWithoutOperand", "{a: 2*}",
+                   "it ends where a number or a name is wanted"),
+    WithParameters("TwoNumbersInARow", "{a: 2 3}", "an operator is missing before '3'"),
+    WithParameters("UnknownFunction", "{a: sinh(1)}",
+                   "there is no function 'sinh'; known are sqrt"),
+    WithParameters("UnknownUnit", "{a: 3 furlong}", "an operator is missing before 'furlong'"),
+    WithParameters("AngleOfALength", "{a: sin(3 mm)}", "sin of a length; it takes an angle"),
+    WithParameters("RootOfANegative", "{a: sqrt(-1)}", "root of -1, which is below zero"),
+    WithParameters("NothingForAParameter", "{a: }",
+                   "parameters.a: expected a number or an expression"),
     WithParameters("EmptyName", "{'': 1}", "made of letters, digits and '_'"),
     WithParameters("NameThatBeginsWithADigit", "{1a: 1}", "made of letters, digits and '_'"),
     WithParameters("MapForAParameter", "{a: {b: 1}}", "expected a number or an expression"),
-    WithParameters("LongCircle", "{a: b, b: c, c: a}", "needs its own value"),
+    WithParameters("LongCircle", "{a: b, b: c, c: a}", "needs its own value: a -> b -> c -> a"),
     {"ParameterOfAnotherKind",
      "ground: frame\nlinks:\n  frame:\n    anchors:\n      main:  {origin: [0, 0, 0]",
      "parameters: {a: 3 kg}\nground: frame\nlinks:\n  frame:\n    anchors:\n      main:  {origin: "
      "[a, 0, 0]",
-     10, "links.frame.anchors.main.origin[0]"},
+     10, "links.frame.anchors.main.origin[0]: 'a': a mass, where a length is asked"},
 };
 
 std::string SubjectOf(const testing::TestParamInfo<Malformed>& info) {

@@ -4,6 +4,9 @@
 
 #include <functional>
 #include <stdexcept>
+#include <string>
+
+#include "vmech/base/late_library.h"
 
 namespace vmech::minimise_test {
 namespace {
@@ -33,6 +36,10 @@ class RosenSuzuki final : public NonlinearProgram {
 
 class EveryMethod : public testing::TestWithParam<ProgramMethod> {
  protected:
+  void SetUp() override {
+    const LateLibrary package(GetParam() == ProgramMethod::kIpopt ? "ipopt" : "nlopt");
+    if (!package.loaded()) GTEST_SKIP() << package.error();
+  }
   ProgramResult Solve() {
     ProgramOptions options;
     options.method = GetParam();
@@ -65,13 +72,15 @@ TEST_P(EveryMethod, SaysThatItIsDefinedNowhere) {
   EXPECT_FALSE(result.feasible);
 }
 
+std::string NameOfMethod(const testing::TestParamInfo<ProgramMethod>& info) {
+  constexpr const char* kNames[] = {"Slsqp", "Mma", "Ipopt"};
+  return kNames[static_cast<int>(info.param)];
+}
+
 INSTANTIATE_TEST_SUITE_P(Programs, EveryMethod,
                          testing::Values(ProgramMethod::kSlsqp, ProgramMethod::kMma,
                                          ProgramMethod::kIpopt),
-                         [](const auto& info) {
-                           constexpr const char* kNames[] = {"Slsqp", "Mma", "Ipopt"};
-                           return kNames[static_cast<int>(info.param)];
-                         });
+                         NameOfMethod);
 
 TEST(Minimise, RefusesAStartOutsideOfTheBounds) {
   RosenSuzuki program;
