@@ -8,7 +8,7 @@
 
 #include "vmech/base/late_library.h"
 
-namespace vmech {
+namespace vmech::minimise_test {
 namespace {
 
 /// Problem 43 of Hock and Schittkowski, "Test Examples for Nonlinear Programming Codes" (1981), by
@@ -89,4 +89,4 @@ TEST(Minimise, RefusesAStartOutsideOfTheBounds) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::minimise_test
