@@ -4,6 +4,7 @@
 #include <new>
 #include <stdexcept>
 
+#include "vmech/bindings/shared/parametric.h"
 #include "vmech/mechanisms/files/file_errors.h"
 
 namespace vmech::c {
@@ -69,6 +70,26 @@ void RequireSize(const char* name, const void* given, size_t size, size_t known)
                                 " has fields that this version of the library does not know: "
                                 "install a later libvmech_c, or leave them 0");
   }
+}
+
+std::vector<ParameterSetting> SettingsOf(const vmech_read_options* options) {
+  const vmech_read_options given = ReadOrDefault("options", options);
+  std::vector<std::string> words;
+  for (size_t i = 0; i < given.setting_count; ++i) {
+    RequirePointer("options.settings", given.settings);
+    RequirePointer("options.settings[..]", given.settings[i]);
+    words.emplace_back(given.settings[i]);
+  }
+  return vmech::SettingsOf(words);
+}
+
+vmech_status ParameterAt(const HandleState* handle, const std::vector<StatedParameter>& parameters,
+                         size_t index, vmech_parameter* parameter) noexcept {
+  if (StatusOf(handle) != VMECH_OK) return StatusOf(handle);
+  if (index >= parameters.size()) return VMECH_INVALID;
+  const StatedParameter& stated = parameters[index];
+  const vmech_parameter told{0, stated.name.c_str(), stated.unit.c_str(), stated.figure};
+  return Write(told, parameter) ? VMECH_OK : VMECH_INVALID;
 }
 
 }  // namespace vmech::c

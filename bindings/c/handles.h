@@ -10,6 +10,8 @@
 #include "vmech.h"
 #include "vmech/base/pose.h"
 #include "vmech/bindings/shared/computed.h"
+#include "vmech/mechanisms/expressions/parameter_table.h"
+#include "vmech/mechanisms/files/mechanism_source.h"
 #include "vmech/mechanisms/mechanism.h"
 #include "vmech/studies/study.h"
 
@@ -21,7 +23,8 @@ struct HandleState {
 
 struct vmech_mechanism : HandleState {
   vmech::Mechanism mechanism;
-  std::vector<std::string> freedoms;  ///< names
+  std::vector<std::string> freedoms;               ///< names
+  std::vector<vmech::StatedParameter> parameters;  ///< of the file
 };
 
 struct vmech_study : HandleState {
@@ -115,6 +118,13 @@ bool Write(Struct value, Struct* to) noexcept {
   std::memcpy(to, &value, to->struct_size < sizeof(Struct) ? to->struct_size : sizeof value);
   return true;
 }
+
+/// @throws std::invalid_argument for a setting that is none.
+std::vector<ParameterSetting> SettingsOf(const vmech_read_options* options);
+
+/// One of several parameters.
+vmech_status ParameterAt(const HandleState* handle, const std::vector<StatedParameter>& parameters,
+                         size_t index, vmech_parameter* parameter) noexcept;
 
 inline Vector3d VectorOf(const double numbers[3]) {
   return {numbers[0], numbers[1], numbers[2]};

@@ -2,16 +2,18 @@
 #include <utility>
 
 #include "handles.h"
+#include "vmech/bindings/shared/parametric.h"
 #include "vmech/bindings/shared/posed_mechanism.h"
-#include "vmech/mechanisms/files/reader.h"
+#include "vmech/mechanisms/files/document.h"
 #include "vmech/mechanisms/validity.h"
 
 namespace vmech::c {
 namespace {
 
-void Take(Mechanism mechanism, vmech_mechanism* handle) {
-  handle->mechanism = std::move(mechanism);
+void Take(ParametricMechanism read, vmech_mechanism* handle) {
+  handle->mechanism = std::move(read.mechanism);
   handle->freedoms = NamesOfAllFreedoms(handle->mechanism);
+  handle->parameters = std::move(read.parameters);
 }
 
 /// An x axis for a z axis alone.
@@ -97,18 +99,33 @@ bool Failed(const HandleState* handle) {
 using namespace vmech::c;
 
 vmech_mechanism* vmech_mechanism_open(const char* path) {
+  return vmech_mechanism_open_with(path, nullptr);
+}
+
+vmech_mechanism* vmech_mechanism_open_with(const char* path, const vmech_read_options* options) {
   return Make<vmech_mechanism>([&](vmech_mechanism* handle) {
     RequirePointer("path", path);
-    Take(vmech::ReadMechanism(path), handle);
+    Take(vmech::ReadParametric(vmech::ReadTextFile(path), path, SettingsOf(options)), handle);
   });
 }
 
 vmech_mechanism* vmech_mechanism_parse(const char* text, const char* name) {
+  return vmech_mechanism_parse_with(text, name, nullptr);
+}
+
+vmech_mechanism* vmech_mechanism_parse_with(const char* text, const char* name,
+                                            const vmech_read_options* options) {
   return Make<vmech_mechanism>([&](vmech_mechanism* handle) {
     RequirePointer("text", text);
     RequirePointer("name", name);
-    Take(vmech::ParseMechanism(text, name), handle);
+    Take(vmech::ReadParametric(text, name, SettingsOf(options)), handle);
   });
+}
+
+vmech_status vmech_mechanism_parameter(const vmech_mechanism* mechanism, size_t index,
+                                       vmech_parameter* parameter) {
+  if (mechanism == nullptr) return VMECH_OUT_OF_MEMORY;
+  return ParameterAt(mechanism, mechanism->parameters, index, parameter);
 }
 
 vmech_mechanism* vmech_mechanism_new(const char* name) {

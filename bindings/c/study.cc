@@ -105,10 +105,20 @@ ModesQuestion QuestionOf(const vmech_modes_options& options) {
 using namespace vmech::c;
 
 vmech_study* vmech_study_open(const char* path) {
+  return vmech_study_open_with(path, nullptr);
+}
+
+vmech_study* vmech_study_open_with(const char* path, const vmech_read_options* options) {
   return Make<vmech_study>([&](vmech_study* handle) {
     RequirePointer("path", path);
-    handle->file = vmech::ReadStudy(path);
+    handle->file = vmech::ReadStudy(path, SettingsOf(options));
   });
+}
+
+vmech_status vmech_study_parameter(const vmech_study* study, size_t index,
+                                   vmech_parameter* parameter) {
+  if (study == nullptr) return VMECH_OUT_OF_MEMORY;
+  return ParameterAt(study, study->file.parameters, index, parameter);
 }
 
 vmech_study* vmech_study_new(const vmech_mechanism* mechanism) {
@@ -122,6 +132,7 @@ vmech_mechanism* vmech_study_mechanism(const vmech_study* study) {
   return Make<vmech_mechanism>([&](vmech_mechanism* handle) {
     handle->mechanism = Sound(study).file.study.mechanism;
     handle->freedoms = vmech::NamesOfAllFreedoms(handle->mechanism);
+    handle->parameters = study->file.parameters;
   });
 }
 

@@ -69,10 +69,24 @@ VMECH_API const char* vmech_version(void);
 
 /* ---- Mechanisms ---- */
 
-/* From a file (docs/file-format.md), or from its text; `name` stands for the file in messages. */
+/* How a file is read. */
+typedef struct vmech_read_options {
+  size_t struct_size;
+  /* [setting_count] values of parameters, "crank=60" or "load=1 kN", which go before those of the
+   * file; numbers without a unit count in the units of the file. */
+  const char* const* settings;
+  size_t setting_count;
+} vmech_read_options;
+/* From a file (docs/file-format.md). */
 VMECH_API vmech_mechanism* vmech_mechanism_open(const char* path);
+/* The same with options; NULL: none. */
+VMECH_API vmech_mechanism* vmech_mechanism_open_with(const char* path,
+                                                     const vmech_read_options* options);
 /* From a text; `name` stands for the file in messages. */
 VMECH_API vmech_mechanism* vmech_mechanism_parse(const char* text, const char* name);
+/* The same with options; NULL: none. */
+VMECH_API vmech_mechanism* vmech_mechanism_parse_with(const char* text, const char* name,
+                                                      const vmech_read_options* options);
 /* An empty one, to be built by the functions below; its first link is the ground. */
 VMECH_API vmech_mechanism* vmech_mechanism_new(const char* name);
 /* Gives it back; NULL is allowed. */
@@ -145,10 +159,23 @@ VMECH_API const char* vmech_mechanism_name(const vmech_mechanism* mechanism, vme
 VMECH_API int32_t vmech_mechanism_find(const vmech_mechanism* mechanism, vmech_item item,
                                        const char* name);
 
+/* A parameter of a file, and what it is after all settings. */
+typedef struct vmech_parameter {
+  size_t struct_size;
+  const char* name;
+  const char* unit; /* "mm", or that of the setting; empty of a number */
+  double value;     /* in the unit */
+} vmech_parameter;
+/* The parameters of the file in its order; VMECH_INVALID beyond the last. */
+VMECH_API vmech_status vmech_mechanism_parameter(const vmech_mechanism* mechanism, size_t index,
+                                                 vmech_parameter* parameter);
+
 /* ---- Studies ---- */
 
 /* From a file (docs/study-format.md) and those that it names. */
 VMECH_API vmech_study* vmech_study_open(const char* path);
+/* The same with options; NULL: none. Settings are of parameters of the mechanism or the study. */
+VMECH_API vmech_study* vmech_study_open_with(const char* path, const vmech_read_options* options);
 /* Of a mechanism, at rest at time 0 and without loads but its weight, to be added to. */
 VMECH_API vmech_study* vmech_study_new(const vmech_mechanism* mechanism);
 /* Gives it back; NULL is allowed. */
@@ -157,8 +184,11 @@ VMECH_API void vmech_study_free(vmech_study* study);
 VMECH_API vmech_status vmech_study_status(const vmech_study* study);
 /* What the handle says of its status. */
 VMECH_API const char* vmech_study_message(const vmech_study* study);
-/* A copy of the study's mechanism. */
+/* A copy of the study's mechanism, with the parameters of the study. */
 VMECH_API vmech_mechanism* vmech_study_mechanism(const vmech_study* study);
+/* The parameters of the mechanism, then those of the study; VMECH_INVALID beyond the last. */
+VMECH_API vmech_status vmech_study_parameter(const vmech_study* study, size_t index,
+                                             vmech_parameter* parameter);
 
 /* A motor: one freedom of a joint moves as prescribed, whatever force that takes. With a table, by
  * the cubic spline through it; without, start + speed t + acceleration t^2 / 2. */

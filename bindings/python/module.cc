@@ -15,10 +15,11 @@
 #include "vmech/apps/compare/suite_reader.h"
 #include "vmech/apps/drawing/mechanism_drawing.h"
 #include "vmech/bindings/shared/computed.h"
+#include "vmech/bindings/shared/parametric.h"
 #include "vmech/bindings/shared/posed_mechanism.h"
 #include "vmech/kinematics/loops/assembled_mechanism.h"
+#include "vmech/mechanisms/files/document.h"
 #include "vmech/mechanisms/files/file_errors.h"
-#include "vmech/mechanisms/files/reader.h"
 #include "vmech/mechanisms/files/writer.h"
 #include "vmech/mechanisms/validity.h"
 #include "vmech/studies/study_reader.h"
@@ -263,17 +264,37 @@ py::list Compare(const std::filesystem::path& path, const std::vector<std::strin
   return rows;
 }
 
+using GivenParameter = std::tuple<std::string, double, std::string>;
+using MechanismAndParameters = std::pair<std::shared_ptr<Mechanism>, std::vector<GivenParameter>>;
+
 std::vector<std::string> JointTypes(const Mechanism& mechanism) {
   std::vector<std::string> types;
   for (const Joint& joint : mechanism.joints) types.emplace_back(NameOf(joint.type));
   return types;
 }
 
+/// (name, value, unit) of each.
+std::vector<GivenParameter> Stated(const std::vector<StatedParameter>& parameters) {
+  std::vector<GivenParameter> stated;
+  for (const StatedParameter& p : parameters) stated.push_back({p.name, p.figure, p.unit});
+  return stated;
+}
+
+/// A mechanism and its parameters, read with "crank=60" or the like.
+MechanismAndParameters ParseMechanismText(const std::string& text, const std::string& name,
+                                          const std::vector<std::string>& settings) {
+  ParametricMechanism read = ReadParametric(text, name, SettingsOf(settings));
+  return {std::make_shared<Mechanism>(std::move(read.mechanism)), Stated(read.parameters)};
+}
+MechanismAndParameters ReadMechanismFile(const std::filesystem::path& path,
+                                         const std::vector<std::string>& settings) {
+  return ParseMechanismText(ReadTextFile(path), path.string(), settings);
+}
+
 void BindMechanism(py::module_* module) {
   py::class_<Mechanism, std::shared_ptr<Mechanism>>(*module, "Mechanism")
-      .def_static("read", [](const std::filesystem::path& path) { return ReadMechanism(path); })
-      .def_static("parse", [](const std::string& text,
-                              const std::string& name) { return ParseMechanism(text, name); })
+      .def_static("read", &ReadMechanismFile)
+      .def_static("parse", &ParseMechanismText)
       .def("write", [](const Mechanism& m) { return WriteMechanism(m); })
       .def("svg", &Svg)
       .def("ik", &Ik)
@@ -302,7 +323,11 @@ void BindMechanism(py::module_* module) {
 
 void BindStudy(py::module_* module) {
   py::class_<StudyFile, std::shared_ptr<StudyFile>>(*module, "Study")
-      .def_static("read", [](const std::filesystem::path& path) { return ReadStudy(path); })
+      .def_static("read",
+                  [](const std::filesystem::path& path, const std::vector<std::string>& settings) {
+                    return ReadStudy(path, SettingsOf(settings));
+                  })
+      .def("parameters", [](const StudyFile& f) { return Stated(f.parameters); })
       .def_static("of", &StudyOf)
       .def("run", &Run)
       .def_readonly("name", &StudyFile::name)

@@ -17,7 +17,8 @@ FileErrors, with an argument ValueError, what has no solution NoSolution.
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any, Callable, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import (TYPE_CHECKING, Any, Callable, Mapping, NamedTuple, Optional, Sequence, Tuple,
+                    Union)
 
 from . import _vmech
 from ._vmech import FileErrors, NoSolution
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     Path = Union[str, os.PathLike[str]]
 
 __all__ = ["Bearing", "Bearings", "Computed", "Drive", "Event", "FileErrors", "Load", "Mechanism",
-           "NoSolution", "Row", "Session", "Study", "Tick", "compare", "hold"]
+           "NoSolution", "Parameter", "Row", "Session", "Study", "Tick", "compare", "hold"]
 
 COMPONENTS = ("fx", "fy", "fz", "mx", "my", "mz")
 VERDICTS = ("certain", "not determined by statics", "singular at this pose")
@@ -48,14 +49,38 @@ def _index(names: Sequence[str], name: Union[str, int], what: str) -> int:
     raise ValueError(f"there is no {what} '{name}'; there are {', '.join(names) or 'none'}")
 
 
+class Parameter(NamedTuple):
+    """What a parameter of a file is, after all settings."""
+
+    value: float  #: in the unit
+    unit: str  #: "mm", or that of the setting; empty of a number
+
+
+#: Values of parameters by name: numbers, which count in the units of the file, or texts, "60 mm".
+Settings = Mapping[str, Union[float, str]]
+
+
+def _words(settings: Optional[Settings]) -> list[str]:
+    """Settings as the library reads them."""
+    return [f"{name}={value if isinstance(value, str) else repr(float(value))}"
+            for name, value in (settings or {}).items()]
+
+
+def _stated(parameters: Sequence[tuple[str, float, str]]) -> dict[str, Parameter]:
+    return {name: Parameter(value, unit) for name, value, unit in parameters}
+
+
 class Mechanism:
     """What a mechanism is: links that meet in joints. Immutable.
 
     A program that builds one writes it as a text (docs/file-format.md) and gives that to `parse`.
     """
 
-    def __init__(self, raw: _vmech.Mechanism) -> None:
+    def __init__(self, raw: _vmech.Mechanism,
+                 parameters: Sequence[tuple[str, float, str]] = ()) -> None:
         self._raw = raw
+        #: Of the file, by name.
+        self.parameters: dict[str, Parameter] = _stated(parameters)
         self.name: str = raw.name
         self.links: list[str] = raw.links()
         self.joints: list[str] = raw.joints()
@@ -65,14 +90,17 @@ class Mechanism:
         self.freedoms: list[str] = raw.freedoms()
 
     @staticmethod
-    def read(path: Path) -> Mechanism:
-        """From a file. Raises FileErrors with everything that is wrong with it."""
-        return Mechanism(_vmech.Mechanism.read(os.fspath(path)))
+    def read(path: Path, parameters: Optional[Settings] = None) -> Mechanism:
+        """From a file, with values of its parameters that go before its own.
+
+        Raises FileErrors with everything that is wrong with it or with `parameters`.
+        """
+        return Mechanism(*_vmech.Mechanism.read(os.fspath(path), _words(parameters)))
 
     @staticmethod
-    def parse(text: str, name: str = "text") -> Mechanism:
+    def parse(text: str, name: str = "text", parameters: Optional[Settings] = None) -> Mechanism:
         """The same from a text; `name` stands for the file in messages."""
-        return Mechanism(_vmech.Mechanism.parse(text, name))
+        return Mechanism(*_vmech.Mechanism.parse(text, name, _words(parameters)))
 
     def text(self) -> str:
         """As a file, in metres and radians: read back, it is the same to the last bit."""
@@ -179,12 +207,20 @@ class Study:
         self.mechanism = mechanism
 
     @staticmethod
-    def read(path: Path) -> Study:
-        """From a file (docs/study-format.md) and those that it names. Raises FileErrors."""
+    def read(path: Path, parameters: Optional[Settings] = None) -> Study:
+        """From a file (docs/study-format.md) and those that it names. Raises FileErrors.
+
+        `parameters` of the mechanism or the study go before those of the files.
+        """
         study = Study.__new__(Study)
-        study._raw = _vmech.Study.read(os.fspath(path))
-        study.mechanism = Mechanism(study._raw.mechanism())
+        study._raw = _vmech.Study.read(os.fspath(path), _words(parameters))
+        study.mechanism = Mechanism(study._raw.mechanism(), study._raw.parameters())
         return study
+
+    @property
+    def parameters(self) -> dict[str, Parameter]:
+        """Of the mechanism, then of the study, by name."""
+        return _stated(self._raw.parameters())
 
     @property
     def name(self) -> str:

@@ -74,8 +74,7 @@ static void LoadsOfAPendulum(void) {
   for (size_t pose = 0; pose < 3 && w.data != NULL; ++pose) {
     const double angle = kSpeed * 0.01 * (double)pose, pull = kMass * kArm * kSpeed * kSpeed;
     Near(w.data[6 * pose], -pull * cos(angle), 1e-12, "pin force x [N]");
-    Near(w.data[6 * pose + 1], -pull * sin(angle) + kMass * kGravity - 1, 1e-12,
-         "pin force y [N]");
+    Near(w.data[6 * pose + 1], -pull * sin(angle) + kMass * kGravity - 1, 1e-12, "pin force y [N]");
   }
   struct {
     double number, other;
@@ -167,7 +166,8 @@ static void StructuresOfOtherVersions(void) {
   vmech_mechanism_free(m);
 }
 
-/* An arm of two links a, b in the plane reaches r by the elbow cos(q2) = (r^2 - a^2 - b^2) / 2ab. */
+/* An arm of two links a, b in the plane reaches r by the elbow cos(q2) = (r^2 - a^2 - b^2) / 2ab.
+ */
 static const char* const kArmText =
     "vmech: \"1.0\"\n"
     "name: arm\n"
@@ -313,6 +313,75 @@ static void PowerOfASliderCrank(const char* examples) {
   vmech_study_free(study);
 }
 
+static const char* const kBar =
+    "vmech: '1.0'\nname: bar\nunits: {length: mm, angle: deg}\ngravity: [0, 0, 0]\nground: a\n"
+    "parameters: {length: 50, mass: 2 kg}\n"
+    "links:\n  a: {anchors: {pin: {}}}\n"
+    "  b: {mass: mass, anchors: {pin: {}, tip: {origin: [length, 0, 0]}}}\n"
+    "joints: {pin: {type: revolute, connects: [a/pin, b/pin]}}\n"
+    "grasps: {tip: {link: b, origin: [length, 0, 0], kind: point}}\n";
+
+/* Values of parameters that go before those of the file, and what they are then. */
+static void ParametersOfAText(void) {
+  static const char* const settings[2] = {"length=7 cm", "mass=0.5"};
+  static const char* const wrong[1] = {"length=3 kg"};
+  static const char* const none[1] = {"length"};
+  const vmech_read_options options = {sizeof options, settings, 2};
+  const vmech_read_options bad = {sizeof bad, wrong, 1}, empty = {sizeof empty, none, 1};
+  vmech_parameter p = {.struct_size = sizeof p};
+  vmech_mechanism* as_it_is = vmech_mechanism_parse(kBar, "bar");
+  Is(vmech_mechanism_parameter(as_it_is, 0, &p), VMECH_OK, "a parameter", "");
+  Expect(p.name != NULL && strcmp(p.name, "length") == 0, "its name", "");
+  Near(p.value, 50, 0, "its value");
+  vmech_mechanism_free(as_it_is);
+  vmech_mechanism* set = vmech_mechanism_parse_with(kBar, "bar", &options);
+  Is(vmech_mechanism_parameter(set, 0, &p), VMECH_OK, "set", vmech_mechanism_message(set));
+  Near(p.value, 7, 1e-15, "length [cm]");
+  Expect(p.unit != NULL && strcmp(p.unit, "cm") == 0, "its unit, of the setting", "");
+  Is(vmech_mechanism_parameter(set, 1, &p), VMECH_OK, "set", "");
+  Near(p.value, 0.5, 1e-15, "mass [kg]");
+  Is(vmech_mechanism_parameter(set, 2, &p), VMECH_INVALID, "beyond the last", "");
+  vmech_ik_options ik;
+  memset(&ik, 0, sizeof ik);
+  ik.struct_size = sizeof ik;
+  ik.hand.position[0] = 0.042;
+  ik.hand.position[1] = 0.056;
+  ik.hand.rotation[0] = ik.hand.rotation[4] = ik.hand.rotation[8] = 1;
+  vmech_result* pose = vmech_ik(set, &ik);
+  vmech_array errors = {.struct_size = sizeof errors};
+  vmech_result_array(pose, VMECH_HAND_ERRORS, &errors);
+  for (int k = 0; k < 3 && errors.data != NULL; ++k) Near(errors.data[k], 0, 1e-9, "reach");
+  Expect(errors.data != NULL, "a bar of 70 mm reaches", vmech_result_message(pose));
+  vmech_result_free(pose);
+  vmech_mechanism_free(set);
+  vmech_mechanism* failed = vmech_mechanism_parse_with(kBar, "bar", &bad);
+  Is(vmech_mechanism_status(failed), VMECH_FILE_ERROR, "a mass for a length", "");
+  Expect(strstr(vmech_mechanism_message(failed), "a mass, where a length is asked") != NULL,
+         "it is named", vmech_mechanism_message(failed));
+  vmech_mechanism_free(failed);
+  failed = vmech_mechanism_parse_with(kBar, "bar", &empty);
+  Is(vmech_mechanism_status(failed), VMECH_INVALID, "a name alone", "");
+  vmech_mechanism_free(failed);
+}
+
+/* A study takes settings for its mechanism. */
+static void ParametersOfAStudy(const char* examples) {
+  static const char* const settings[1] = {"coupler=0.8"};
+  const vmech_read_options options = {sizeof options, settings, 1};
+  char path[400];
+  vmech_parameter p = {.struct_size = sizeof p};
+  snprintf(path, sizeof path, "%s/../../studies/examples/crank-rocker-study.yaml", examples);
+  vmech_study* study = vmech_study_open_with(path, &options);
+  int found = 0;
+  for (size_t i = 0; vmech_study_parameter(study, i, &p) == VMECH_OK; ++i) {
+    if (strcmp(p.name, "coupler") != 0) continue;
+    Near(p.value, 0.8, 1e-15, "coupler [m]");
+    found = 1;
+  }
+  Expect(found, "the coupler is a parameter", vmech_study_message(study));
+  vmech_study_free(study);
+}
+
 int main(int count, char** arguments) {
   const char* examples = count > 1 ? arguments[1] : ".";
   LoadsOfAPendulum();
@@ -322,6 +391,8 @@ int main(int count, char** arguments) {
   HeldPendulum();
   FourBarStudy(examples);
   PowerOfASliderCrank(examples);
+  ParametersOfAText();
+  ParametersOfAStudy(examples);
   printf(failures == 0 ? "all as expected\n" : "%d NOT as expected\n", failures);
   return failures != 0;
 }

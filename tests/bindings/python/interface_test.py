@@ -51,6 +51,43 @@ def matrix(rotation, vectors):
     return numpy.einsum("...ij,...j->...i", rotation, vectors)
 
 
+class Parameters(unittest.TestCase):
+    """Values that go before those of a file."""
+
+    FILE = EXAMPLES / "four-bar-by-lengths.yaml"
+
+    def test_of_a_mechanism_are_stated_and_set(self):
+        plain = vmech.Mechanism.read(self.FILE)
+        self.assertEqual(plain.parameters["crank"], (0.5, "m"))
+        self.assertEqual(list(plain.parameters)[:4], ["ground", "crank", "coupler", "rocker"])
+        for crank in (0.4, "40 cm", "2*200 mm"):
+            mechanism = vmech.Mechanism.read(self.FILE, {"crank": crank})
+            if not isinstance(crank, str):
+                self.assertEqual(mechanism.parameters["crank"], (0.4, "m"))
+            # The bar weighs a kilogram a metre.
+            self.assertAlmostEqual(mechanism.masses[mechanism.links.index("crank")][0], 0.4,
+                                   delta=1e-15)
+        text = self.FILE.read_text(encoding="utf-8")
+        parsed = vmech.Mechanism.parse(text, parameters={"crank": 0.4})
+        self.assertEqual(parsed.text(), vmech.Mechanism.read(self.FILE, {"crank": 0.4}).text())
+
+    def test_of_a_study_reach_its_mechanism(self):
+        file = EXAMPLES.parents[1] / "studies" / "examples" / "crank-rocker-study.yaml"
+        study = vmech.Study.read(file, {"coupler": 0.8, "turn": "20 deg"})
+        self.assertEqual(study.parameters["coupler"], (0.8, "m"))
+        self.assertAlmostEqual(study.parameters["crank"].value, 6 ** -0.5, delta=1e-15)
+        self.assertEqual(study.mechanism.parameters, study.parameters)
+        main = study.mechanism.freedoms.index("main")
+        self.assertAlmostEqual(study.run().positions[0, main], numpy.radians(20), delta=1e-15)
+
+    def test_that_are_wrong_are_named(self):
+        for parameters, hint in (({"crnak": 1}, "did you mean 'crank'"),
+                                 ({"crank": "1 kg"}, "a mass"),
+                                 ({"crank": ""}, "'crank=' is not of the form NAME=VALUE")):
+            with self.assertRaisesRegex(ValueError, hint):
+                vmech.Mechanism.read(self.FILE, parameters)
+
+
 class FourBar(unittest.TestCase):
     """Equilibrium and power, from the drawing and the masses of four-bar.yaml alone."""
 
