@@ -7,7 +7,14 @@
 
 #include "vmech/apps/ik/ik.h"
 
+namespace CLI {
+class App;
+}
+
 namespace vmech {
+
+/// Of every command: what it can be asked for, its options on the command line, and what runs it
+/// and returns an exit code.
 
 /// What the vmech command returns to the shell.
 enum ExitCode {
@@ -28,6 +35,7 @@ struct CheckArguments {
   std::filesystem::path draw;    ///< where a picture of the only mechanism goes; empty: nowhere
   std::vector<std::string> set;  ///< parameters, "crank=60"
 };
+void AddCheck(CLI::App* app, CheckArguments* arguments);
 /// Checks every file; returns the greatest of their exit codes.
 int RunCheck(const CheckArguments& arguments);
 
@@ -41,8 +49,10 @@ struct LoadsArguments {
   std::vector<std::string> set;  ///< parameters, "crank=60"
   std::filesystem::path motion;  ///< a result folder, whose motion is taken; empty: the study's own
 };
+void AddLoads(CLI::App* app, LoadsArguments* arguments);
 int RunLoads(const LoadsArguments& arguments);
 /// Of a study with a simulation; the default folder is "<study>-simulate".
+void AddSimulate(CLI::App* app, LoadsArguments* arguments);
 int RunSimulate(const LoadsArguments& arguments);
 
 struct SensitivityArguments {
@@ -54,6 +64,7 @@ struct SensitivityArguments {
   bool quiet = false;
   std::vector<std::string> set;  ///< parameters, "crank=60"
 };
+void AddSensitivities(CLI::App* app, SensitivityArguments* arguments);
 int RunSensitivities(const SensitivityArguments& arguments);
 
 struct OptimiseArguments {
@@ -69,13 +80,16 @@ struct OptimiseArguments {
   bool quiet = false;
   std::vector<std::string> set;  ///< parameters, "crank=60"
 };
+void AddOptimise(CLI::App* app, OptimiseArguments* arguments);
 int RunOptimise(const OptimiseArguments& arguments);
+
 struct ModesArguments {
   std::filesystem::path file;       ///< mechanism, or study with a simulation
   std::filesystem::path out;        ///< for tables and studies; empty: they are not written
   std::optional<double> tolerance;  ///< instead of the mechanism's own
   std::vector<std::string> set;     ///< parameters, "crank=60"
 };
+void AddModes(CLI::App* app, ModesArguments* arguments);
 int RunModes(const ModesArguments& arguments);
 
 struct CompareArguments {
@@ -86,12 +100,14 @@ struct CompareArguments {
   int jobs = 0;                  ///< processes; 0: as many as there are processors
   std::vector<std::string> set;  ///< parameters, "crank=60"
 };
+void AddCompare(CLI::App* app, CompareArguments* arguments);
 int RunCompare(const CompareArguments& arguments);
 
 struct IkArguments {
   IkQuestion question;
   bool json = false;
 };
+void AddIk(CLI::App* app, IkArguments* arguments);
 int RunIk(const IkArguments& arguments);
 
 struct ExportArguments {
@@ -101,6 +117,7 @@ struct ExportArguments {
   bool dh_frames = false;        ///< links drawn in their Denavit-Hartenberg frames
   std::vector<std::string> set;  ///< parameters, "crank=60"
 };
+void AddExport(CLI::App* app, ExportArguments* arguments);
 int RunExport(const ExportArguments& arguments);
 
 struct HapticArguments {
@@ -133,6 +150,7 @@ struct HapticArguments {
   bool quiet = false;
   std::vector<std::string> set;  ///< parameters, "crank=60"
 };
+void AddHaptic(CLI::App* app, HapticArguments* arguments);
 int RunHaptic(const HapticArguments& arguments);
 
 struct DeviceArguments {
@@ -145,6 +163,7 @@ struct DeviceArguments {
   std::optional<int> serve;          ///< the UDP port that it is served at; none: it is not
   std::string listen = "127.0.0.1";  ///< address of this machine to serve it at
 };
+void AddDevice(CLI::App* app, DeviceArguments* arguments);
 int RunDevice(const DeviceArguments& arguments);
 
 struct ViewArguments {
@@ -154,6 +173,7 @@ struct ViewArguments {
   int port = 0;                     ///< 0: any free one
   std::vector<std::string> set;     ///< parameters, "crank=60"
 };
+void AddView(CLI::App* app, ViewArguments* arguments);
 int RunView(const ViewArguments& arguments);
 
 struct ReplayArguments {
@@ -166,6 +186,7 @@ struct ReplayArguments {
   bool view = false;                ///< shown on a page, at the speed of the recording
   bool quiet = false;
 };
+void AddReplay(CLI::App* app, ReplayArguments* arguments);
 int RunReplay(const ReplayArguments& replay);
 
 }  // namespace vmech

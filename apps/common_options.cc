@@ -24,4 +24,12 @@ void AddSet(CLI::App* command, std::vector<std::string>* set) {
       ->type_name("NAME=VALUE");
 }
 
+void AddStrict(CLI::App* command, bool* strict) {
+  command->add_flag("--strict", *strict, "treat warnings as errors: exit code 2");
+}
+
+void AddQuiet(CLI::App* command, bool* quiet) {
+  command->add_flag("-q,--quiet", *quiet, "print errors alone");
+}
+
 }  // namespace vmech

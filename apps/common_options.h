@@ -16,5 +16,9 @@ namespace vmech {
 void AddTolerance(CLI::App* command, std::optional<double>* tolerance);
 /// `--set NAME=VALUE`, parameters of the file.
 void AddSet(CLI::App* command, std::vector<std::string>* set);
+/// `--strict`: warnings are errors.
+void AddStrict(CLI::App* command, bool* strict);
+/// `--quiet`.
+void AddQuiet(CLI::App* command, bool* quiet);
 
 }  // namespace vmech

@@ -1,7 +1,6 @@
-#include "vmech/apps/design/design_options.h"
-
 #include <CLI/CLI.hpp>
 
+#include "vmech/apps/commands.h"
 #include "vmech/apps/common_options.h"
 
 namespace vmech {
@@ -51,7 +50,7 @@ void AddSensitivities(CLI::App* app, SensitivityArguments* arguments) {
   command->add_option("--threads", arguments->threads, "0 for one per processor")
       ->check(CLI::Range(0, 64, "0..64"))
       ->capture_default_str();
-  command->add_flag("-q,--quiet", arguments->quiet, "print errors alone");
+  AddQuiet(command, &arguments->quiet);
 }
 
 void AddOptimise(CLI::App* app, OptimiseArguments* arguments) {
@@ -91,7 +90,7 @@ void AddOptimise(CLI::App* app, OptimiseArguments* arguments) {
   command->add_option("--threads", arguments->threads, "0 for one per processor")
       ->check(CLI::Range(0, 64, "0..64"))
       ->capture_default_str();
-  command->add_flag("-q,--quiet", arguments->quiet, "print errors alone");
+  AddQuiet(command, &arguments->quiet);
 }
 
 }  // namespace vmech

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <csignal>
@@ -10,6 +11,7 @@
 #include <thread>
 
 #include "vmech/apps/commands.h"
+#include "vmech/apps/common_options.h"
 #include "vmech/apps/console/progress_bar.h"
 #include "vmech/apps/files/file_kind.h"
 #include "vmech/apps/files/parameter_options.h"
@@ -24,6 +26,42 @@
 
 namespace vmech {
 namespace {
+
+constexpr const char* kLoadsHelp =
+    "Moves a mechanism as the study file says and writes the wrench at every joint, which of its\n"
+    "components are certain, and the bearings that will carry it:\n"
+    "  loads.csv      joint wrenches and drive forces at every pose\n"
+    "  motion.csv     pose, velocity and acceleration of every link\n"
+    "  joints.csv     coordinate, rate and acceleration of every freedom of every joint\n"
+    "  certainty.csv  what statics determines and what it does not\n"
+    "  bearings.csv   the bearing chosen at every position\n"
+    "  summary.json   the figures that matter, for programs\n"
+    "  report.html    the whole study as one page, to read and to pass on";
+
+constexpr const char* kSimulateHelp =
+    "Lets a mechanism move by its own dynamics, as the block `simulation` of a study says, with\n"
+    "springs, friction, motors and limits, and writes what `vmech loads` writes, and:\n"
+    "  energies.csv   where the energy is, what was supplied and dissipated, what is in error\n"
+    "  events.csv     impacts at limits, contacts that stick and slip, coordinates reached\n"
+    "Ctrl-C ends it with the results as far as it went, and exit code 3.";
+
+void AddStudyOptions(CLI::App* command, const char* results, LoadsArguments* loads) {
+  command->add_option("STUDY", loads->study, "study file, YAML or JSON")
+      ->required()
+      ->type_name("FILE");
+  command
+      ->add_option(
+          "--out", loads->out,
+          fmt::format("folder for the results (default: <study>-{} in this folder)", results))
+      ->type_name("DIR");
+  command->add_option("--threads", loads->threads, "number of threads; 0: one per processor")
+      ->check(CLI::Range(0, 64, "0..64"))
+      ->capture_default_str();
+  AddSet(command, &loads->set);
+  AddTolerance(command, &loads->tolerance);
+  AddStrict(command, &loads->strict);
+  AddQuiet(command, &loads->quiet);
+}
 
 std::atomic<bool> interrupted = false;
 
@@ -88,6 +126,20 @@ void Deliver(const StudyFile& file, const StudyOutcome& outcome, const LoadsArgu
 }
 
 }  // namespace
+
+void AddLoads(CLI::App* app, LoadsArguments* loads) {
+  CLI::App* command = app->add_subcommand("loads", kLoadsHelp);
+  AddStudyOptions(command, "loads", loads);
+  command
+      ->add_option("--motion", loads->motion,
+                   "result folder of vmech simulate or vmech loads, whose motion is taken in place "
+                   "of the study's own")
+      ->type_name("DIR");
+}
+
+void AddSimulate(CLI::App* app, LoadsArguments* simulated) {
+  AddStudyOptions(app->add_subcommand("simulate", kSimulateHelp), "simulate", simulated);
+}
 
 int RunLoads(const LoadsArguments& arguments) {
   StudyFile file = ReadFor("loads", arguments);

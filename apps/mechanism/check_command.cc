@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "vmech/apps/commands.h"
+#include "vmech/apps/common_options.h"
 #include "vmech/apps/console/option_error.h"
 #include "vmech/apps/drawing/mechanism_drawing.h"
 #include "vmech/apps/files/file_kind.h"
@@ -18,6 +20,13 @@
 
 namespace vmech {
 namespace {
+
+constexpr const char* kCheckHelp =
+    "Says what vmech understands of a mechanism file: links, joints, loops and where they are "
+    "cut,\n"
+    "mobility, redundant equations, and how well the loops close. Everything that is wrong with "
+    "the\n"
+    "file is listed at once, as file:line:column.";
 
 using Json = nlohmann::ordered_json;
 
@@ -99,6 +108,23 @@ void PrintJsons(const std::vector<std::filesystem::path>& paths,
 }
 
 }  // namespace
+
+void AddCheck(CLI::App* app, CheckArguments* check) {
+  CLI::App* command = app->add_subcommand("check", kCheckHelp);
+  command->add_option("MECHANISM", check->mechanisms, "mechanism files, YAML or JSON")
+      ->required()
+      ->type_name("FILE");
+  AddSet(command, &check->set);
+  AddTolerance(command, &check->tolerance);
+  command->add_flag("--dh", check->dh, "print the Denavit-Hartenberg rows as well");
+  command
+      ->add_option("--draw", check->draw,
+                   "write a picture of the mechanism: FILE.svg, or FILE.html to turn "
+                   "and zoom")
+      ->type_name("FILE");
+  AddStrict(command, &check->strict);
+  command->add_flag("--json", check->json, "print JSON instead of text");
+}
 
 int RunCheck(const CheckArguments& arguments) {
   if (!arguments.draw.empty() && arguments.mechanisms.size() > 1) {

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include "vmech/apps/commands.h"
+#include "vmech/apps/common_options.h"
 #include "vmech/apps/console/option_error.h"
 #include "vmech/apps/files/file_kind.h"
 #include "vmech/apps/files/inputs_apart.h"
@@ -16,6 +18,13 @@
 
 namespace vmech {
 namespace {
+
+constexpr const char* kExportHelp =
+    "Writes a mechanism, YAML or JSON, for other programs, by the ending of the output:\n"
+    "  .sdf          SDFormat 1.9 (Gazebo), loops and all\n"
+    "  .xml, .mjcf   MuJoCo, loops as equality constraints\n"
+    "  .yaml         vmech's own format\n"
+    "and says what the other format cannot hold.";
 
 ExportedText Exported(const Mechanism& mechanism, const ExportArguments& arguments) {
   const std::string ending = arguments.out.extension().string();
@@ -34,6 +43,20 @@ ExportedText Exported(const Mechanism& mechanism, const ExportArguments& argumen
 }
 
 }  // namespace
+
+void AddExport(CLI::App* app, ExportArguments* arguments) {
+  CLI::App* command = app->add_subcommand("export", kExportHelp);
+  command->add_option("MECHANISM", arguments->mechanism, "mechanism file, YAML or JSON")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("--out", arguments->out, "file to write")->required()->type_name("FILE");
+  AddSet(command, &arguments->set);
+  AddTolerance(command, &arguments->tolerance);
+  command->add_flag("--dh-frames", arguments->dh_frames,
+                    "draw every link in its Denavit-Hartenberg frame");
+  command->add_flag("--si", arguments->si,
+                    ".yaml in metres and radians instead of millimetres and degrees");
+}
 
 int RunExport(const ExportArguments& arguments) {
   RequireOutputsApart({arguments.mechanism}, {arguments.out});

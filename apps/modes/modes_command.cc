@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <span>
 #include <stdexcept>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "vmech/apps/commands.h"
+#include "vmech/apps/common_options.h"
 #include "vmech/apps/files/file_kind.h"
 #include "vmech/apps/files/inputs_apart.h"
 #include "vmech/apps/files/output_folder.h"
@@ -22,6 +24,11 @@
 
 namespace vmech {
 namespace {
+
+constexpr const char* kModesHelp =
+    "Finds where a mechanism rests under weight, springs, motors and loads, downhill from its\n"
+    "start, and says whether it stays there, how fast it swings about it, how that is damped, and\n"
+    "in which shapes. Dry friction and limits are left out.";
 
 namespace fs = std::filesystem;
 
@@ -93,6 +100,19 @@ void Answer(Asked asked, const ModesArguments& arguments) {
 }
 
 }  // namespace
+
+void AddModes(CLI::App* app, ModesArguments* modes) {
+  CLI::App* command = app->add_subcommand("modes", kModesHelp);
+  command->add_option("FILE", modes->file, "mechanism, or study with a block `simulation`")
+      ->required()
+      ->type_name("FILE");
+  command
+      ->add_option("--out", modes->out,
+                   "folder for modes.csv, and for a study of each mode, which vmech view plays")
+      ->type_name("DIR");
+  AddSet(command, &modes->set);
+  AddTolerance(command, &modes->tolerance);
+}
 
 int RunModes(const ModesArguments& arguments) {
   Asked asked = ReadWithSettings(arguments.set,

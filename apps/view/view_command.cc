@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -12,6 +13,7 @@
 #include <utility>
 
 #include "vmech/apps/commands.h"
+#include "vmech/apps/common_options.h"
 #include "vmech/apps/console/option_error.h"
 #include "vmech/apps/files/file_kind.h"
 #include "vmech/apps/files/parameter_options.h"
@@ -27,6 +29,13 @@
 
 namespace vmech {
 namespace {
+
+constexpr const char* kViewHelp =
+    "Shows a mechanism in the browser: any link can be dragged with the mouse, joints have "
+    "sliders,\n"
+    "and the load of every joint is shown. The motion of a study or of a result folder is played,\n"
+    "and a recording of `vmech haptic` runs again. The page is served on this machine alone\n"
+    "(127.0.0.1), at an address with a random token.";
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
@@ -149,6 +158,23 @@ void ViewResults(const ViewArguments& arguments) {
 }
 
 }  // namespace
+
+void AddView(CLI::App* app, ViewArguments* view) {
+  CLI::App* command = app->add_subcommand("view", kViewHelp);
+  command->add_option("FILE", view->file, "mechanism, study, result folder or recording")
+      ->required()
+      ->type_name("FILE");
+  command
+      ->add_option("--meshes", view->meshes,
+                   "folder with an STL file for every link, as `vmech import --meshes` writes it "
+                   "(default: <mechanism>-meshes beside the file)")
+      ->type_name("DIR");
+  command->add_option("--port", view->port, "port of the page; 0: any free one")
+      ->check(CLI::Range(0, 65535, "0..65535"))
+      ->capture_default_str();
+  AddSet(command, &view->set);
+  AddTolerance(command, &view->tolerance);
+}
 
 int RunView(const ViewArguments& arguments) {
   const FileKind kind = KindOfFile(arguments.file);

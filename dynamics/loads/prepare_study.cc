@@ -142,7 +142,7 @@ PreparedStudy PrepareStudy(const LoadStudy& study) {
   model.hand = study.hand;
   if (study.hand) model.hand_stiffness = HandWeights(study, model.tree.length);
   model.rule = study.rule;
-  model.has_passive = HasPassive(study.mechanism);
+  model.has_passive = HasPassiveJoints(study.mechanism);
   model.has_dry_friction = HasDryFriction(study.mechanism);
   model.has_load_friction = HasLoadFriction(study.mechanism);
   RequirePrescribed(study, &prepared);

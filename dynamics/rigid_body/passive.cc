@@ -10,7 +10,7 @@ bool HasDryFriction(const Joint& joint) {
                      [](const Passive& p) { return p.coulomb != 0; });
 }
 
-bool HasPassive(const Mechanism& mechanism) {
+bool HasPassiveJoints(const Mechanism& mechanism) {
   return std::any_of(mechanism.joints.begin(), mechanism.joints.end(), [](const Joint& joint) {
     if (HasDryFriction(joint)) return true;
     return std::any_of(joint.passive.begin(), joint.passive.end(),

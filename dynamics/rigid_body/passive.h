@@ -13,7 +13,7 @@ T SpringForce(const PassiveOf<T>& passive, const T& position, const T& rate) {
 /// Does the joint have dry friction, constant or in proportion to its load?
 bool HasDryFriction(const Joint& joint);
 /// Does any joint have springs or friction?
-bool HasPassive(const Mechanism& mechanism);
+bool HasPassiveJoints(const Mechanism& mechanism);
 /// Does any joint have dry friction?
 bool HasDryFriction(const Mechanism& mechanism);
 /// Does any joint's friction depend on its load?

@@ -87,7 +87,7 @@ void FillModel(PreparedSimulation* prepared) {
   model.rule = simulation.rule;
   model.no_inertia = NoInertia(model.tree);
   const std::vector<Joint>& joints = simulation.mechanism.joints;
-  model.has_passive = HasPassive(simulation.mechanism) || !simulation.motors.empty() ||
+  model.has_passive = HasPassiveJoints(simulation.mechanism) || !simulation.motors.empty() ||
                       std::any_of(joints.begin(), joints.end(), IsLimited);
   for (const int v : model.partition.driven) {
     JointDrive drive;

@@ -18,7 +18,7 @@
 #include "vmech/hw_interface/probing/probe_ticks.h"
 #include "vmech/hw_interface/rendering/coupled_tick.h"
 
-namespace vmech {
+namespace vmech::allocation_test {
 namespace {
 
 /// A spring that notes how much had been allocated by its first ticks and by its last.
@@ -170,6 +170,6 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::allocation_test
 
 #endif

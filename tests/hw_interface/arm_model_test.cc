@@ -9,7 +9,7 @@
 #include "vmech/hw_interface/arm/sarcos_arm.h"
 #include "vmech/kinematics/loops/closure.h"
 
-namespace vmech {
+namespace vmech::arm_model_test {
 namespace {
 
 using Row7 = Eigen::Matrix<double, 7, 1>;
@@ -114,4 +114,4 @@ TEST(ArmModel, RefusesAClosedLoop) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::arm_model_test

@@ -29,7 +29,7 @@
 #include "vmech/hw_interface/rendering/paper_choice.h"
 #include "vmech/kinematics/loops/assembled_mechanism.h"
 
-namespace vmech {
+namespace vmech::audit_test {
 namespace {
 
 struct SessionOptions {
@@ -299,4 +299,4 @@ TEST(Felt, CountsWhatWasWithheldAndWhy) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::audit_test

@@ -18,7 +18,7 @@
 #include "vmech/kinematics/loops/loops.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
 
-namespace vmech {
+namespace vmech::coupled_tick_test {
 namespace {
 
 constexpr double kPeriod = 1e-3;
@@ -283,4 +283,4 @@ TEST(ChooseCoupling, SlowerDevicesGetASofterSpring) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::coupled_tick_test

@@ -8,7 +8,7 @@
 #include <complex>
 #include <numbers>
 
-namespace vmech {
+namespace vmech::estimators_test {
 namespace {
 
 constexpr double kPeriod = 1e-3;
@@ -268,4 +268,4 @@ TEST(RenderedMass, LagsTheMoreTheHeavierItIsWhereSolvedImplicitly) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::estimators_test

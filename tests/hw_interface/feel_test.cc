@@ -17,7 +17,7 @@
 #include "vmech/kinematics/loops/assembly.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
 
-namespace vmech {
+namespace vmech::feel_test {
 namespace {
 
 constexpr double kPeriod = 1e-3;
@@ -252,4 +252,4 @@ INSTANTIATE_TEST_SUITE_P(Examples, EveryOneFreedomExample,
                          [](const auto& info) { return TestName(info.param); });
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::feel_test

@@ -8,7 +8,7 @@
 #include "vmech/hw_interface/rendering/coupled_tick.h"
 #include "vmech/hw_interface/rendering/coupling_choice.h"
 
-namespace vmech {
+namespace vmech::grab_test {
 namespace {
 
 constexpr double kPeriod = 1e-3;
@@ -88,4 +88,4 @@ INSTANTIATE_TEST_SUITE_P(Examples, EveryGrab,
                          [](const auto& info) { return TestName(info.param); });
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::grab_test

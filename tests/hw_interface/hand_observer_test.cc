@@ -9,7 +9,7 @@
 #include "vmech/hw_interface/rendering/coupled_tick.h"
 #include "vmech/hw_interface/rendering/coupling_choice.h"
 
-namespace vmech {
+namespace vmech::hand_observer_test {
 namespace {
 
 constexpr std::int64_t kPeriodNs = 1'000'000;
@@ -138,4 +138,4 @@ TEST(HandObserver, QuietensTheForceOnAHandAtRest) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::hand_observer_test

@@ -8,7 +8,7 @@
 #include "hw_interface/fake_service.h"
 #include "vmech/hw_interface/haply/web_socket_frames.h"
 
-namespace vmech {
+namespace vmech::haply_test {
 namespace {
 
 using Event = WebSocketReader::Event;
@@ -280,4 +280,4 @@ TEST(HaplyMaster, SaysWhyThereIsNoDevice) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::haply_test

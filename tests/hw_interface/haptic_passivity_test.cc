@@ -18,7 +18,7 @@
 #include "vmech/hw_interface/rendering/coupling_choice.h"
 #include "vmech/hw_interface/rendering/mechanism_tick.h"
 
-namespace vmech {
+namespace vmech::haptic_passivity_test {
 namespace {
 
 constexpr int kSessions = 1000;
@@ -123,4 +123,4 @@ TEST_P(HapticPassivity, HoldsWhateverTheSession) {
 INSTANTIATE_TEST_SUITE_P(Shards, HapticPassivity, testing::Range(0, kShards));
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::haptic_passivity_test

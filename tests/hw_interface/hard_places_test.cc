@@ -13,7 +13,7 @@
 #include "vmech/hw_interface/rendering/coupling_choice.h"
 #include "vmech/hw_interface/rendering/mechanism_tick.h"
 
-namespace vmech {
+namespace vmech::hard_places_test {
 namespace {
 
 constexpr double kPeriod = 1e-3;
@@ -207,4 +207,4 @@ TEST(HardPlaces, PapersTickKeepsItsBranchAtDeadCentresAndReportsThem) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::hard_places_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vmech {
+namespace vmech::histogram_test {
 namespace {
 
 TEST(Histogram, PercentilesAreRightWithinAnEighth) {
@@ -35,4 +35,4 @@ TEST(Histogram, TakesAnyDuration) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::histogram_test

@@ -9,7 +9,7 @@
 #include "vmech/hw_interface/masters/simulated_master.h"
 #include "vmech/hw_interface/probing/probe_ticks.h"
 
-namespace vmech {
+namespace vmech::identification_test {
 namespace {
 
 struct Shaken {
@@ -163,4 +163,4 @@ TEST(GuideTick, BringsTheHandleHomeAndSaysSo) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::identification_test

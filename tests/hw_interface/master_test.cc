@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vmech {
+namespace vmech::master_test {
 namespace {
 
 /// A driver that remembers what reached it.
@@ -169,4 +169,4 @@ TEST(Master, SaysWhichStepOfTheLifeCycleIsMissing) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::master_test

@@ -10,7 +10,7 @@
 #include "vmech/kinematics/loops/assembly.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
 
-namespace vmech {
+namespace vmech::mechanism_tick_test {
 namespace {
 
 constexpr double kPeriod = 1e-3;
@@ -132,4 +132,4 @@ TEST(MechanismTick, RefusesAGraspThatLeavesALinkLoose) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::mechanism_tick_test

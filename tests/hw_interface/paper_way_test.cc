@@ -22,7 +22,7 @@
 #include "vmech/kinematics/loops/assembled_mechanism.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
 
-namespace vmech {
+namespace vmech::paper_way_test {
 namespace {
 
 double Seconds() {
@@ -241,4 +241,4 @@ INSTANTIATE_TEST_SUITE_P(
                     PaperRequest{.stiffness = 300}));
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::paper_way_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vmech {
+namespace vmech::plugin_master_test {
 namespace {
 
 std::string ErrorOf(const std::string& library, const std::string& parameters) {
@@ -59,4 +59,4 @@ TEST(PluginMaster, SaysWhyAPluginCannotBeUsed) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::plugin_master_test

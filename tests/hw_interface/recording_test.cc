@@ -23,7 +23,7 @@
 #include "vmech/hw_interface/recording/mcap_records.h"
 #include "vmech/hw_interface/recording/tick_recorder.h"
 
-namespace vmech {
+namespace vmech::recording_test {
 namespace {
 
 TickRecord SampleTick(int k) {
@@ -369,4 +369,4 @@ TEST_F(RecorderTest, ALongSessionNeedsNoMoreMemoryThanAShortOne) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::recording_test

@@ -9,7 +9,7 @@
 #include "vmech/hw_interface/masters/simulated_master.h"
 #include "vmech/hw_interface/recording/recording_file.h"
 
-namespace vmech {
+namespace vmech::runner_test {
 namespace {
 
 /// A spring from the hand to a point, `anchor` away from the grasp: the simplest mechanism.
@@ -287,4 +287,4 @@ TEST(FlushToZero, TakesSmallNumbersForZeroAndGivesThemBack) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::runner_test

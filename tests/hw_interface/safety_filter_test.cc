@@ -7,7 +7,7 @@
 #include "hw_interface/point_master.h"
 #include "support/examples.h"
 
-namespace vmech {
+namespace vmech::safety_filter_test {
 namespace {
 
 constexpr double kPeriod = 1e-3;
@@ -380,4 +380,4 @@ TEST(Passivity, EnergyStaysAboveItsBoundWhateverTheGains) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::safety_filter_test

@@ -18,7 +18,7 @@
 #include "vmech/hw_interface/rendering/coupled_tick.h"
 #include "vmech/hw_interface/rendering/coupling_choice.h"
 
-namespace vmech {
+namespace vmech::sane_sessions_test {
 namespace {
 
 constexpr int kShards = 4;
@@ -117,4 +117,4 @@ TEST_P(SaneSessions, HardlyEverTrip) {
 INSTANTIATE_TEST_SUITE_P(Shards, SaneSessions, testing::Range(0, kShards));
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::sane_sessions_test

@@ -15,7 +15,7 @@
 #include "vmech/hw_interface/screen/triple_buffer.h"
 #include "vmech/kinematics/loops/assembled_mechanism.h"
 
-namespace vmech {
+namespace vmech::screen_mechanism_test {
 namespace {
 
 ScreenMechanism OnScreen(const std::string& example) {
@@ -151,4 +151,4 @@ TEST(TripleBuffer, GivesTheNewestWholeValue) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::screen_mechanism_test

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <stdexcept>
 
-namespace vmech {
+namespace vmech::simulated_master_test {
 namespace {
 
 constexpr std::int64_t kTick = 1'000'000;  // [ns]
@@ -214,4 +214,4 @@ TEST(SimulatedMasterOptions, NameWhatIsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::simulated_master_test

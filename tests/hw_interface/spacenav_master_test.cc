@@ -9,7 +9,7 @@
 
 #include "support/temp_folder.h"
 
-namespace vmech {
+namespace vmech::spacenav_master_test {
 namespace {
 
 constexpr std::int64_t kTick = 1'000'000;  // [ns]
@@ -103,4 +103,4 @@ TEST(SpacenavMaster, SaysWhichDaemonIsMissing) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::spacenav_master_test

@@ -4,7 +4,7 @@
 
 #include "hw_interface/point_master.h"
 
-namespace vmech {
+namespace vmech::stability_test {
 namespace {
 
 /// Whether a spring K with damper B renders a swing that dies out within 20 000 samples.
@@ -117,4 +117,4 @@ TEST(BoundsReport, SaysWhatTheDeviceAllows) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::stability_test

@@ -27,7 +27,7 @@
 #include "vmech/kinematics/loops/loops.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
 
-namespace vmech {
+namespace vmech::two_hands_test {
 namespace {
 
 constexpr double kPeriod = 1e-3;
@@ -351,4 +351,4 @@ TEST(TwoHands, AskForADeviceEachAndOneRate) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::two_hands_test

@@ -8,7 +8,7 @@
 #include "support/examples.h"
 #include "vmech/hw_interface/remote/udp_server.h"
 
-namespace vmech {
+namespace vmech::udp_test {
 namespace {
 
 constexpr std::int64_t kTick = 1'000'000;  // [ns]
@@ -276,4 +276,4 @@ TEST(UdpMaster, SaysWhomItCouldNotReach) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::udp_test

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <limits>
 
-namespace vmech {
+namespace vmech::udp_wire_test {
 namespace {
 
 UdpPacket StatePacket() {
@@ -127,4 +127,4 @@ TEST(UdpWire, ChecksumIsTheUsualOne) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::udp_wire_test

@@ -18,7 +18,7 @@
 #include "vmech/kinematics/loops/loops.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
 
-namespace vmech {
+namespace vmech::variation_test {
 namespace {
 
 constexpr double kPeriod = 1e-3;  // [s]
@@ -303,4 +303,4 @@ TEST(ScreenMechanism, StandsStillWhileItsDesignIsVaried) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::variation_test

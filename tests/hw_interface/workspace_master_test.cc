@@ -7,7 +7,7 @@
 #include "hw_interface/point_master.h"
 #include "vmech/hw_interface/safety/safety_filter.h"
 
-namespace vmech {
+namespace vmech::workspace_master_test {
 namespace {
 
 /// A device whose handle, buttons and force are the test's.
@@ -219,4 +219,4 @@ TEST(WorkspaceMaster, WhatIsKnownOfTheHandleStandsForWhatItStates) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::workspace_master_test

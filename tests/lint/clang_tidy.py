@@ -25,12 +25,11 @@ import sys
 from sources import ROOT, relative
 
 sys.path.insert(0, str(ROOT / "cmake"))
-from batches import batches_of
+from batches import batches_of, with_included_headers
 
 MODULES = ("base", "mechanisms", "solvers", "kinematics", "dynamics", "comparison", "hw_interface",
            "studies", "apps")
 BATCH = 40  # sources; clang-tidy takes 1 GB for 20 of them
-INCLUDE = re.compile(r'^#include "vmech/([^"]+)"', re.MULTILINE)
 # What clang refuses: options of g++, and headers that g++ has precompiled.
 GCC_ALONE = re.compile(r"-m(move|store)-max=\d+|-fpch-preprocess|-Winvalid-pch")
 # The sources of a batch that is compiled as one.
@@ -58,20 +57,9 @@ def clang_flags(command):
     return flags
 
 
-def with_included_headers(source):
-    """The source and the project's headers that it includes, directly or not."""
-    found, waiting = set(), [source]
-    while waiting:
-        path = waiting.pop()
-        if path not in found and path.is_file():
-            found.add(path)
-            waiting += [ROOT / name for name in INCLUDE.findall(path.read_text())]
-    return sorted(found)
-
-
 def fingerprint(path, flags, tidy_version):
     digest = hashlib.sha256(f"{tidy_version}\n{flags}\n".encode())
-    for file in [ROOT / ".clang-tidy", *with_included_headers(path)]:
+    for file in [ROOT / ".clang-tidy", *sorted(with_included_headers(path))]:
         digest.update(f"{relative(file)}\n".encode() + file.read_bytes())
     return digest.hexdigest()
 

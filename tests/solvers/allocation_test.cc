@@ -8,7 +8,7 @@
 #include "vmech/solvers/nullspace.h"
 #include "vmech/solvers/penalty.h"
 
-namespace vmech {
+namespace vmech::allocation_test {
 namespace {
 
 /// n points in a row with unit distances, the first pulled to a target, the last tied to the
@@ -116,5 +116,5 @@ TEST_P(FastSolvers, AllocateNothingInTheWarmNullspace) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::allocation_test
 #endif

@@ -10,11 +10,11 @@
 #include "textbook_problems.h"
 #include "vmech/solvers/backend.h"
 
-namespace vmech {
+namespace vmech::company_test {
 namespace {
 
-using testing::TextbookProblem;
-using testing::TextbookProblems;
+using textbook::TextbookProblem;
+using textbook::TextbookProblems;
 
 std::vector<Summary> SolveEveryProblem(Backend backend) {
   std::vector<Summary> summaries;
@@ -22,7 +22,7 @@ std::vector<Summary> SolveEveryProblem(Backend backend) {
     const auto problem = known.make();
     summaries.push_back(Solve(backend, *problem, StoppingRule{}, known.start));
   }
-  for (const TextbookProblem& impossible : testing::InfeasibleProblems()) {
+  for (const TextbookProblem& impossible : textbook::InfeasibleProblems()) {
     const auto problem = impossible.make();
     summaries.push_back(Solve(backend, *problem, StoppingRule{}, impossible.start));
   }
@@ -102,4 +102,4 @@ TEST(Captured, HoldsWhatIsWritten) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::company_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vmech {
+namespace vmech::complete_orthogonal_test {
 namespace {
 
 constexpr double kRankTolerance = 1e-9;
@@ -52,4 +52,4 @@ TEST(CompleteOrthogonal, TakesMatricesLargerThanTheStackHolds) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::complete_orthogonal_test

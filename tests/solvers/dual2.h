@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
-namespace vmech::testing {
+namespace vmech::textbook {
 
 /// A number with its gradient and Hessian in n variables: exact derivatives for test problems.
 struct Dual2 {
@@ -59,4 +59,4 @@ inline Dual2 cos(const Dual2& a) {
   return Dual2::Chain(a, std::cos(a.value), -std::sin(a.value), -std::cos(a.value));
 }
 
-}  // namespace vmech::testing
+}  // namespace vmech::textbook

@@ -7,13 +7,13 @@
 #include "textbook_problems.h"
 #include "vmech/solvers/backend.h"
 
-namespace vmech {
+namespace vmech::every_backend_test {
 namespace {
 
-using testing::FindProblem;
-using testing::InfeasibleProblems;
-using testing::TextbookProblem;
-using testing::TextbookProblems;
+using textbook::FindProblem;
+using textbook::InfeasibleProblems;
+using textbook::TextbookProblem;
+using textbook::TextbookProblems;
 
 constexpr double kObjectiveTolerance = 1e-8;
 
@@ -158,4 +158,4 @@ INSTANTIATE_TEST_SUITE_P(All, EveryBackend, ::testing::ValuesIn(kAllBackends),
                          [](const auto& info) { return std::string(NameOf(info.param)); });
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::every_backend_test

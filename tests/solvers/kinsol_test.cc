@@ -6,11 +6,11 @@
 
 #include "textbook_problems.h"
 
-namespace vmech {
+namespace vmech::kinsol_test {
 namespace {
 
-using testing::FindProblem;
-using testing::TextbookProblem;
+using textbook::FindProblem;
+using textbook::TextbookProblem;
 
 constexpr double kClosed = 1e-10;  // the stopping rule's
 
@@ -64,4 +64,4 @@ TEST(Kinsol, RefusesToHoldWhatIsNotThere) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::kinsol_test

@@ -5,7 +5,7 @@
 #include <functional>
 #include <stdexcept>
 
-namespace vmech {
+namespace vmech::minimise_test {
 namespace {
 
 /// Problem 43 of Hock and Schittkowski, "Test Examples for Nonlinear Programming Codes" (1981), by
@@ -78,4 +78,4 @@ TEST(Minimise, RefusesAStartOutsideOfTheBounds) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::minimise_test

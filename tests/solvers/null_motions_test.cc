@@ -7,7 +7,7 @@
 #include "vmech/solvers/augmented_lagrangian.h"
 #include "vmech/solvers/backend.h"
 
-namespace vmech {
+namespace vmech::null_motions_test {
 namespace {
 
 constexpr double kRounding = 1e-12;
@@ -157,4 +157,4 @@ TEST(NullMotions, StandStillInEveryStepOfTheFastPath) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::null_motions_test

@@ -5,11 +5,11 @@
 #include "textbook_problems.h"
 #include "vmech/solvers/backend.h"
 
-namespace vmech {
+namespace vmech::optimality_test {
 namespace {
 
-using testing::FindProblem;
-using testing::TextbookProblem;
+using textbook::FindProblem;
+using textbook::TextbookProblem;
 
 Optimality At(const std::string& name, const VectorXd& x) {
   const auto problem = FindProblem(name).make();
@@ -41,12 +41,12 @@ TEST(Optimality, LetsABoundPushButNeverPull) {
   EXPECT_LT(at.kkt_error, kRounding);
   EXPECT_NEAR(at.bound_multipliers[0], 1.75, kRounding);  // -(x1 - 2) - mu, mu = -x3
   // On the same bound where the gradient points inwards nothing may hold it back.
-  const auto inward = [](const std::vector<testing::Dual2>& v) {
-    return std::vector<testing::Dual2>{v[0] + 1};
+  const auto inward = [](const std::vector<textbook::Dual2>& v) {
+    return std::vector<textbook::Dual2>{v[0] + 1};
   };
-  testing::FormulaProblem problem({1, 1, 1, 0}, inward,
-                                  [](const auto&) { return std::vector<testing::Dual2>{}; },
-                                  {{0, 0, -5, 0.5}});
+  textbook::FormulaProblem problem({1, 1, 1, 0}, inward,
+                                   [](const auto&) { return std::vector<textbook::Dual2>{}; },
+                                   {{0, 0, -5, 0.5}});
   Linearization at_bound(problem.sizes());
   const VectorXd bound = VectorXd::Constant(1, 0.5);
   at_bound.Evaluate(problem, bound);
@@ -82,4 +82,4 @@ TEST(Optimality, DoesNotCallAMaximumSolved) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::optimality_test

@@ -10,11 +10,11 @@
 #include "vmech/solvers/augmented_lagrangian.h"
 #include "vmech/solvers/nullspace.h"
 
-namespace vmech {
+namespace vmech::penalty_test {
 namespace {
 
-using testing::FindProblem;
-using testing::TextbookProblem;
+using textbook::FindProblem;
+using textbook::TextbookProblem;
 
 Summary SolvedWithWeight(double lambda) {
   const TextbookProblem& known = FindProblem("FourBarPulledOffItsPath");
@@ -119,4 +119,4 @@ TEST(Penalty, RefusesOptionsOutOfRangeByName) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::penalty_test

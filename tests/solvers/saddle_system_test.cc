@@ -4,7 +4,7 @@
 
 #include <Eigen/QR>
 
-namespace vmech {
+namespace vmech::saddle_system_test {
 namespace {
 
 // What three solves at a weight of 1e5 leave along the weakest direction of a random C.
@@ -88,4 +88,4 @@ TEST(SaddleSystem, AFreedomThatNothingHoldsIsRefused) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::saddle_system_test

@@ -7,12 +7,12 @@
 #include "textbook_problems.h"
 #include "vmech/solvers/nullspace.h"
 
-namespace vmech {
+namespace vmech::starts_test {
 namespace {
 
-using testing::Dual2;
-using testing::FindProblem;
-using testing::FormulaProblem;
+using textbook::Dual2;
+using textbook::FindProblem;
+using textbook::FormulaProblem;
 using V = std::vector<Dual2>;
 
 // x^2 + y^2 = 5 and x y = 2: at (1, 2), (2, 1) and their opposites.
@@ -76,7 +76,7 @@ TEST(Starts, ComeBestFirstAndApart) {
 
 // The four-bar's middle, pulled from the branch of the other closure.
 TEST(Starts, FindTheWayToTheOtherBranch) {
-  const testing::TextbookProblem& known = FindProblem("FourBarPulledOffItsPath");
+  const textbook::TextbookProblem& known = FindProblem("FourBarPulledOffItsPath");
   const auto problem = known.make();
   const VectorXd far = known.solution + Eigen::Vector3d(2.5, -2, 2);
   double best = 1e9;
@@ -95,4 +95,4 @@ TEST(Starts, KeepUnitQuaternionsOfLengthOne) {
 }
 
 }  // namespace
-}  // namespace vmech
+}  // namespace vmech::starts_test

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace vmech::testing {
+namespace vmech::textbook {
 namespace {
 
 using V = std::vector<Dual2>;
@@ -389,4 +389,4 @@ const std::vector<TextbookProblem>& InfeasibleProblems() {
   return all;
 }
 
-}  // namespace vmech::testing
+}  // namespace vmech::textbook

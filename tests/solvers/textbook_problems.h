@@ -8,7 +8,7 @@
 #include "dual2.h"
 #include "vmech/solvers/constrained_least_squares.h"
 
-namespace vmech::testing {
+namespace vmech::textbook {
 
 using Functions = std::function<std::vector<Dual2>(const std::vector<Dual2>& x)>;
 
@@ -47,4 +47,4 @@ const TextbookProblem& FindProblem(const std::string& name);
 /// Problems whose constraints no point meets; their `solution` is empty.
 const std::vector<TextbookProblem>& InfeasibleProblems();
 
-}  // namespace vmech::testing
+}  // namespace vmech::textbook

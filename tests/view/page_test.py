@@ -122,6 +122,19 @@ class Picture(PageTest):
         BROWSER.find_element(By.XPATH, "//button[text()='Theme']").click()
         self.assertEqual(self.do(theme), "light")
 
+    def test_a_ground_drawn_by_a_mesh_is_glass_until_it_shall_not_be(self):
+        # A ring about the crank's joint at the origin, through which nothing could be seen.
+        self.open(scenes.with_mesh(800, link=0, large=0.03))
+        button = self.find("//button[@aria-label='Glass: ground']")
+        self.assertEqual(button.get_attribute("aria-pressed"), "true")
+        ring = self.do("return vmechView.screenOf([0, -0.03, 0.02])")
+        self.mouse(ring, "down", "up")
+        self.assertNotEqual(self.do("return vmechView.picked()?.index ?? 'none'"), 0)
+        button.click()
+        self.mouse(ring, "down", "up")
+        self.assertEqual(self.do("return [vmechView.picked().kind, vmechView.picked().index]"),
+                         ["link", 0])
+
     def test_opens_a_hundred_thousand_triangles(self):
         self.open(scenes.with_mesh(100_000), "mesh")
         self.assertGreater(self.do("return vmechView.triangles"), 99_000)

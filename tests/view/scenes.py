@@ -262,11 +262,11 @@ def torus_stl(triangles, large=0.05, small=0.02):
     return bytes(out)
 
 
-def with_mesh(triangles):
-    """The four-bar with its rocker as a mesh."""
+def with_mesh(triangles, link=3, large=0.05):
+    """The four-bar with a link, the rocker or another, as a mesh."""
     scene = FourBar().scene(90)
     scene["title"] = "Mesh"
-    scene["links"][3]["mesh"] = base64.b64encode(torus_stl(triangles)).decode()
+    scene["links"][link]["mesh"] = base64.b64encode(torus_stl(triangles, large)).decode()
     return scene
 
 

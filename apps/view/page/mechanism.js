@@ -1,6 +1,7 @@
 // The mechanism as nodes of three.js: one per link, with its body and its halves of the joints.
 
 const kLimitColour = new THREE.Color(0xd01810).convertSRGBToLinear();
+const kGlass = 0.16;  // opacity of a link that is seen and reached through
 
 class MechanismNodes {
   constructor(scene, shapes, plain) {
@@ -11,7 +12,11 @@ class MechanismNodes {
     this.symbols = new JointSymbols(shapes);
     this.made = new Map();    // by the name of a link or joint: what it is drawn by, as text
     this.meshes = new Map();  // by the name of a part
-    this.parts = [];          // the meshes, to be picked; userData {kind, index, link}
+    this.parts = [];          // the meshes; userData {kind, index, link}
+    // Links that are glass, by number: at first the ground, if a mesh draws it, for it is often a
+    // housing that hides what moves inside.
+    const ground = scene.links[scene.ground];
+    this.glass = new Set(ground && ground.mesh ? [scene.ground] : []);
     this.links = scene.links.map(() => new THREE.Group());
     for (const node of this.links) this.root.add(node);
     this.rebuild();
@@ -26,6 +31,28 @@ class MechanismNodes {
     this.scene.links.forEach((_, index) => this.drawLink(index));
     this.scene.joints.forEach((_, index) => this.drawJoint(index));
     this.parts = Array.from(this.meshes.values());
+    for (const mesh of this.parts) this.setMaterial(mesh);
+  }
+
+  // What the pointer meets.
+  get reachable() {
+    return this.parts.filter((mesh) => !this.isGlass(mesh));
+  }
+
+  isGlass(mesh) {
+    return mesh.userData.kind === "link" && this.glass.has(mesh.userData.link);
+  }
+
+  makeGlass(link, on) {
+    if (on) this.glass.add(link); else this.glass.delete(link);
+    for (const mesh of this.parts) this.setMaterial(mesh);
+  }
+
+  setMaterial(mesh) {
+    const glass = this.isGlass(mesh);
+    Object.assign(mesh.material, {transparent: glass, opacity: glass ? kGlass : 1,
+      depthWrite: !glass});
+    mesh.castShadow = mesh.receiveShadow = !glass;
   }
 
   isNew(name, inputs) {
@@ -71,7 +98,6 @@ class MechanismNodes {
     const material = this.plain ? new THREE.MeshLambertMaterial({color: shade(colour)})
         : new THREE.MeshStandardMaterial({color: shade(colour), roughness: 0.62, metalness: 0.05});
     const mesh = new THREE.Mesh(geometry, material);
-    mesh.castShadow = mesh.receiveShadow = true;
     mesh.userData = Object.assign({colour: material.color.clone()}, userData);
     this.links[userData.link].add(mesh);
     return mesh;

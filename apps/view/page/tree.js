@@ -34,7 +34,20 @@ class Tree {
       focus: () => this.view.hover(kind, index), blur: () => this.view.hover(null, null)}},
       swatch, make("span", {class: "vv-name", text: name}), make("small", {text: remark}));
     this.items.set(kind + index, button);
-    return make("li", {}, button);
+    return make("li", {}, button, kind === "link" ? this.glass(index, name) : null);
+  }
+
+  // A button that makes a link glass.
+  glass(link, name) {
+    const {nodes} = this.view;
+    const button = make("button", {class: "vv-glass", title: "Glass: look and reach through it",
+      "aria-label": "Glass: " + name, "aria-pressed": String(nodes.glass.has(link)),
+      on: {click: () => {
+        const on = !nodes.glass.has(link);
+        this.view.makeGlass(link, on);
+        button.setAttribute("aria-pressed", String(on));
+      }}});
+    return button;
   }
 
   mark() {

@@ -163,6 +163,12 @@ class View {
     this.moved();
   }
 
+  // A link is seen and reached through, or not.
+  makeGlass(link, on) {
+    this.nodes.makeGlass(link, on);
+    this.stage.invalidate();
+  }
+
   light() {
     this.nodes.highlight(this.hovered, this.picked, this.now.atLimit);
     this.stage.invalidate();
@@ -208,7 +214,7 @@ class View {
   // What is under the mouse: {kind, index, link, point in the world} or null.
   hitAt(event) {
     this.nodes.root.updateMatrixWorld();
-    const hits = this.stage.rayAt(event).intersectObjects(this.nodes.parts, false);
+    const hits = this.stage.rayAt(event).intersectObjects(this.nodes.reachable, false);
     return hits.length ? Object.assign({point: hits[0].point.toArray()}, hits[0].object.userData)
                        : null;
   }
