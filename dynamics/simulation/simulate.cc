@@ -295,9 +295,9 @@ class Run {
   /// Steps of the integrator drift by about their tolerance. To bring each of them back would make
   /// it begin anew each time, of lowest order.
   double LargestDrift() const {
-    constexpr double kSteps = 1000;
-    const double tolerance = std::max(options_.relative_tolerance, options_.absolute_tolerance);
-    return std::max(options_.drift_tolerance, kSteps * tolerance);
+    constexpr double kSteps = 10;
+    if (options_.drift_tolerance > 0) return options_.drift_tolerance;
+    return kSteps * std::max(options_.relative_tolerance, options_.absolute_tolerance);
   }
 
   /// Adams takes steps that are short for what decays fastest, though it has long decayed: BDF does

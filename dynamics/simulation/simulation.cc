@@ -156,7 +156,9 @@ void RequireValid(const Simulation& simulation) {
 void SimulationOptions::Validate() const {
   CheckRange("SimulationOptions", "relative_tolerance", relative_tolerance, 1e-14, 1e-2);
   CheckRange("SimulationOptions", "absolute_tolerance", absolute_tolerance, 1e-15, 1e-2);
-  CheckRange("SimulationOptions", "drift_tolerance", drift_tolerance, 1e-13, 1e-3);
+  if (drift_tolerance != 0) {
+    CheckRange("SimulationOptions", "drift_tolerance", drift_tolerance, 1e-13, 1e-3);
+  }
   CheckRange("SimulationOptions", "max_step", max_step, 0, 1e12);
   CheckRange("SimulationOptions", "max_steps", static_cast<double>(max_steps), 1, 1e15);
 }

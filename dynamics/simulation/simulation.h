@@ -149,8 +149,8 @@ struct SimulationOptions {
   /// [1e-15, 1e-2].
   double absolute_tolerance = 1e-10;
   /// Loop error, dimensionless, beyond which the run is brought back on its loops, [1e-13, 1e-3];
-  /// a thousandfold of the tolerances above is always allowed. Results are always closed to 1e-12.
-  double drift_tolerance = 1e-9;
+  /// 0: ten times the larger tolerance above. Results are always closed to 1e-12.
+  double drift_tolerance = 0;
   double max_step = 0;          ///< [s]; 0: none
   long max_steps = 10'000'000;  ///< of the integrator, > 0
   bool loads = true;            ///< whether the joints' wrenches are wanted

@@ -173,6 +173,8 @@ void EquationsOfMotion::CloseIfNearlySingular() {
 void EquationsOfMotion::Place(double time, const double* q, const double* v) {
   SetPose(q);
   regular_->motion.MeasureColumns();
+  // Behind a singular pose, at which no choice was better, this one is judged by its best again.
+  regular_->best_pivot = std::max(regular_->best_pivot, regular_->motion.smallest_pivot());
   from_singular_ = now_ == singular_.get();
   FindDriveMotion(time);
   now_->motion.SetVelocities(v, held_rates_.data());
