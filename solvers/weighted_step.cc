@@ -149,6 +149,17 @@ const VectorXd& WeightedStep::PredictConstraints() noexcept {
   return c_model_;
 }
 
+double WeightedStep::LargestResidualAhead() const noexcept {
+  const Eigen::Index rows = at_x.r.size();
+  double largest = 0;
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    double r_i = at_x.r[i];
+    for (Eigen::Index j = 0; j < dx.size(); ++j) r_i += at_x.J.data()[j * rows + i] * dx[j];
+    largest = std::max(largest, std::abs(r_i));
+  }
+  return largest;
+}
+
 void WeightedStep::Clip(const ConstrainedLeastSquares& problem, const VectorXd& x,
                         double max_step) noexcept {
   const double largest = MaxAbs(dx);

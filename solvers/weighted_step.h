@@ -49,6 +49,9 @@ class WeightedStep {
   /// c + C dx: the constraint error that the linear model expects after the step.
   const VectorXd& PredictConstraints() noexcept;
 
+  /// Largest |r_i + J_i dx|: the residual that the linear model expects after the step.
+  double LargestResidualAhead() const noexcept;
+
   /// Forgets the scale of the damping that Compute() has gathered.
   void ForgetScale() noexcept { scale_.setZero(); }
 

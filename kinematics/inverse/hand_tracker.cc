@@ -197,9 +197,13 @@ bool HandTracker::TakeStep(bool with_curvature) noexcept {
 }
 
 /// The same with the derivatives and factors of the step before, where that was short and this one
-/// is shorter: their change along it is small against what Gauss-Newton leaves out.
+/// is shorter. The pull of the hand, and that of the loops that resist it, has turned with the
+/// mechanism meanwhile, which old derivatives do not see: it has to be too weak to count.
 bool HandTracker::TakeChordStep(double last_step) noexcept {
+  const double most_pull = options_.step_tolerance / last_step;
   if (last_step > kShort) return false;
+  if (workspace_.multipliers.lpNorm<Eigen::Infinity>() > most_pull) return false;
+  if (workspace_.step.LargestResidualAhead() > most_pull) return false;
   WeightedStep& step = workspace_.step;
   const double lambda = options_.weight;
   const double max_step = options_.max_move / options_.steps;

@@ -18,9 +18,9 @@ EXAMPLES = pathlib.Path()
 LATE_LIBRARIES = pathlib.Path()
 INSTALLED = False
 
-# A library by which each package is known.
-PACKAGES = {"ceres": "libglog", "ipopt": "libipopt", "kinsol": "libsundials", "nlopt": "libnlopt",
-            "mpi": "libmpi", "cad": "libTKernel", "sdformat": "libsdformat"}
+# A library by which each package is known. SUNDIALS is within ours.
+PACKAGES = {"ceres": "libglog", "ipopt": "libipopt", "kinsol": "libvmech_kinsol",
+            "nlopt": "libnlopt", "mpi": "libmpi", "cad": "libTKernel", "sdformat": "libsdformat"}
 # What `vmech --version` calls them, of those that are in a library of their own.
 NAMES = {"ceres": "Ceres", "ipopt": "Ipopt", "kinsol": "SUNDIALS", "nlopt": "NLopt", "mpi": "MPI"}
 SOLVERS = ["penalty", "augmented_lagrangian", "nullspace", "ceres_weighted", "ceres_exact", "ipopt",

@@ -135,6 +135,22 @@ INSTANTIATE_TEST_SUITE_P(Examples, EveryHeldExample,
                                          "redundant-arm"),
                          [](const auto& info) { return TestName(info.param); });
 
+// The nearest point of a circle is on the line to its centre. A hand at twice the radius and more
+// turns the crank against each Gauss-Newton step.
+TEST(HandTracker, IsAtTheNearestPoseHoweverFarTheHandIsFromIt) {
+  const Held held("crank", 0);
+  for (const double distance : {0.03, 0.15, 0.31, 0.59, 0.61, 1.0, 3.0}) {
+    HandTracker tracker(held.tree, held.grasp, held.q);
+    Posed X_WH = held.Start();
+    for (int k = 0; k <= 400; ++k) {
+      const double angle = held.q[0] + 2e-3 * std::min(k, 200);
+      X_WH.p = distance * Vector3d(std::cos(angle), std::sin(angle), 0);
+      ASSERT_EQ(tracker.Advance(X_WH), TrackStatus::kFollowed);
+      ASSERT_NEAR(tracker.q()[0], angle, kArrived) << distance << " m from the hinge, target " << k;
+    }
+  }
+}
+
 TEST(HandTracker, HoldsASliderCrankThroughItsDeadCentreOnTheSideWhereItWas) {
   const Held held("slider-crank", "slider", GraspKind::kPoint);
   const double dead_centre = 0.2;  // crank 50 mm and rod 150 mm in line [m]
