@@ -35,7 +35,7 @@ struct CheckArguments {
   std::filesystem::path draw;    ///< where a picture of the only mechanism goes; empty: nowhere
   std::vector<std::string> set;  ///< parameters, "crank=60"
 };
-void AddCheck(CLI::App* app, CheckArguments* arguments);
+void AddCheck(CLI::App* app, CheckArguments* check);
 /// Checks every file; returns the greatest of their exit codes.
 int RunCheck(const CheckArguments& arguments);
 
@@ -49,10 +49,10 @@ struct LoadsArguments {
   std::vector<std::string> set;  ///< parameters, "crank=60"
   std::filesystem::path motion;  ///< a result folder, whose motion is taken; empty: the study's own
 };
-void AddLoads(CLI::App* app, LoadsArguments* arguments);
+void AddLoads(CLI::App* app, LoadsArguments* loads);
 int RunLoads(const LoadsArguments& arguments);
 /// Of a study with a simulation; the default folder is "<study>-simulate".
-void AddSimulate(CLI::App* app, LoadsArguments* arguments);
+void AddSimulate(CLI::App* app, LoadsArguments* simulated);
 int RunSimulate(const LoadsArguments& arguments);
 
 struct SensitivityArguments {
@@ -90,7 +90,7 @@ struct ModesArguments {
   std::optional<double> tolerance;  ///< instead of the mechanism's own
   std::vector<std::string> set;     ///< parameters, "crank=60"
 };
-void AddModes(CLI::App* app, ModesArguments* arguments);
+void AddModes(CLI::App* app, ModesArguments* modes);
 int RunModes(const ModesArguments& arguments);
 
 struct CompareArguments {
@@ -101,14 +101,14 @@ struct CompareArguments {
   int jobs = 0;                  ///< processes; 0: as many as there are processors
   std::vector<std::string> set;  ///< parameters, "crank=60"
 };
-void AddCompare(CLI::App* app, CompareArguments* arguments);
+void AddCompare(CLI::App* app, CompareArguments* compare);
 int RunCompare(const CompareArguments& arguments);
 
 struct IkArguments {
   IkQuestion question;
   bool json = false;
 };
-void AddIk(CLI::App* app, IkArguments* arguments);
+void AddIk(CLI::App* app, IkArguments* ik);
 int RunIk(const IkArguments& arguments);
 
 struct ExportArguments {
@@ -151,7 +151,7 @@ struct HapticArguments {
   bool quiet = false;
   std::vector<std::string> set;  ///< parameters, "crank=60"
 };
-void AddHaptic(CLI::App* app, HapticArguments* arguments);
+void AddHaptic(CLI::App* app, HapticArguments* haptic);
 int RunHaptic(const HapticArguments& arguments);
 
 struct DeviceArguments {
@@ -164,7 +164,7 @@ struct DeviceArguments {
   std::optional<int> serve;          ///< the UDP port that it is served at; none: it is not
   std::string listen = "127.0.0.1";  ///< address of this machine to serve it at
 };
-void AddDevice(CLI::App* app, DeviceArguments* arguments);
+void AddDevice(CLI::App* app, DeviceArguments* device);
 int RunDevice(const DeviceArguments& arguments);
 
 struct ViewArguments {
@@ -174,7 +174,7 @@ struct ViewArguments {
   int port = 0;                     ///< 0: any free one
   std::vector<std::string> set;     ///< parameters, "crank=60"
 };
-void AddView(CLI::App* app, ViewArguments* arguments);
+void AddView(CLI::App* app, ViewArguments* view);
 int RunView(const ViewArguments& arguments);
 
 struct ReplayArguments {
@@ -187,7 +187,7 @@ struct ReplayArguments {
   bool view = false;                ///< shown on a page, at the speed of the recording
   bool quiet = false;
 };
-void AddReplay(CLI::App* app, ReplayArguments* arguments);
+void AddReplay(CLI::App* app, ReplayArguments* replay);
 int RunReplay(const ReplayArguments& replay);
 
 }  // namespace vmech

@@ -71,11 +71,11 @@ VMECH_API const char* vmech_version(void);
 
 /* How a file is read. */
 typedef struct vmech_read_options {
-  size_t struct_size;
+  size_t struct_size; /* sizeof(vmech_read_options) */
   /* [setting_count] values of parameters, "crank=60" or "load=1 kN", which go before those of the
    * file; numbers without a unit count in the units of the file. */
   const char* const* settings;
-  size_t setting_count;
+  size_t setting_count; /* of settings */
 } vmech_read_options;
 /* From a file (docs/file-format.md). */
 VMECH_API vmech_mechanism* vmech_mechanism_open(const char* path);
@@ -161,10 +161,10 @@ VMECH_API int32_t vmech_mechanism_find(const vmech_mechanism* mechanism, vmech_i
 
 /* A parameter of a file, and what it is after all settings. */
 typedef struct vmech_parameter {
-  size_t struct_size;
-  const char* name;
-  const char* unit; /* "mm", or that of the setting; empty of a number */
-  double value;     /* in the unit */
+  size_t struct_size; /* sizeof(vmech_parameter) */
+  const char* name;   /* as in the file */
+  const char* unit;   /* "mm", or that of the setting; empty of a number */
+  double value;       /* in the unit */
 } vmech_parameter;
 /* The parameters of the file in its order; VMECH_INVALID beyond the last. */
 VMECH_API vmech_status vmech_mechanism_parameter(const vmech_mechanism* mechanism, size_t index,

@@ -19,7 +19,7 @@ bool NearSingularPose(EquationsOfMotion& equations, double step);
 /// A step over a singular pose, by the rule of Lobatto (IIIA) of sixth order: its stages lie before
 /// and behind the pose, and none at it.
 struct Leap {
-  static constexpr int kStages = 4;
+  static constexpr int kStages = 4;  ///< of a step
   /// (5 -+ sqrt 5) / 10 within the step.
   static constexpr double kAt[kStages] = {0, 0.27639320225002103, 0.72360679774997897, 1};
 
