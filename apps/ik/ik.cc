@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "vmech/apps/console/option_error.h"
@@ -269,6 +270,18 @@ IkBranch FindBranch(const InverseKinematicsOptions& options, const IkAnswer& ans
   return same ? IkBranch::kSame : IkBranch::kOther;
 }
 
+/// The same pose with hinges that nothing limits less than half a turn from where they started: a
+/// solver's long steps may turn them round.
+void TakeBackWholeTurns(const KinematicTree& tree, const VectorXd& q_start, VectorXd* q) {
+  const std::vector<Joint>& joints = tree.mechanism.joints;
+  for (size_t j = 0; j < joints.size(); ++j) {
+    if (joints[j].type != JointType::kRevolute) continue;
+    if (std::isfinite(joints[j].lower[0]) || std::isfinite(joints[j].upper[0])) continue;
+    const int i = CoordinateIndex(tree, static_cast<int>(j), 0);
+    if (i >= 0) (*q)[i] = q_start[i] + std::remainder((*q)[i] - q_start[i], 2 * std::numbers::pi);
+  }
+}
+
 void ReportLoops(const KinematicTree& tree, InverseKinematics& problem, IkAnswer* answer) {
   const VectorXd e2 = problem.LoopError(answer->summary.x);
   const VectorXd mu = problem.LoopMultipliers(answer->summary.multipliers);
@@ -312,6 +325,7 @@ IkAnswer AnswerIk(const IkQuestion& question) {
   answer.X_WH = ReadTarget(question.target, answer.units, problem.GraspPose(q_start));
   problem.SetTarget(answer.X_WH);
   answer.summary = Solve(backend, problem, StoppingRule{}, q_start);
+  TakeBackWholeTurns(answer.tree, q_start, &answer.summary.x);
   answer.X_WG = problem.GraspPose(answer.summary.x);
   answer.e1 = problem.HandError(answer.summary.x);
   answer.reached = std::sqrt(2 * answer.summary.objective) < kReached;

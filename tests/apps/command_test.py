@@ -234,6 +234,15 @@ class Ik(InFolder):
         self.assertAlmostEqual(math.hypot(*answer["e1"]["position"]), 4.1, delta=1e-9)
         self.assertAlmostEqual(self.value(answer, "shoulder"), math.atan2(4, 3), delta=1e-6)
 
+    def test_turns_no_hinge_round_to_get_there(self):
+        # The tip, 0.3 m from its hinge and 40 degrees up, is to be where it cannot reach: a long
+        # step of the solver overshoots by a whole turn, and a hand beyond twice the radius turns
+        # against the steps of Gauss and Newton that the branch is followed by.
+        for target, angle in (("-1 0 0", math.pi), ("1 0 0", 0), ("0.05 0.5 0", math.atan2(10, 1))):
+            answer = self.answer("crank.yaml", "--target", target)
+            self.assertEqual((answer["verdict"], answer["branch"]), ("out of reach", "same"))
+            self.assertAlmostEqual(self.value(answer, "main"), angle, delta=1e-6)
+
     def test_goes_to_the_branch_of_the_start(self):
         up = self.answer("two-link-arm.yaml", "--target", "0.5 0.3 0", "--start", "elbow=-60")
         down = self.answer("two-link-arm.yaml", "--target", "0.5 0.3 0", "--start", "elbow=60")
