@@ -292,12 +292,15 @@ class Run {
     BringBack();
   }
 
-  /// Steps of the integrator drift by about their tolerance. To bring each of them back would make
-  /// it begin anew each time, of lowest order.
+  /// Steps of the integrator drift by about their tolerance, which is more of coordinates that have
+  /// grown large. To bring each of them back would make it begin anew each time, of lowest order.
   double LargestDrift() const {
     constexpr double kSteps = 10;
     if (options_.drift_tolerance > 0) return options_.drift_tolerance;
-    return kSteps * std::max(options_.relative_tolerance, options_.absolute_tolerance);
+    const KinematicTree& tree = equations_.tree();
+    const double largest = y_.head(tree.nq).lpNorm<Eigen::Infinity>() / std::max(1.0, tree.length);
+    return kSteps * std::max(options_.relative_tolerance * std::max(1.0, largest),
+                             options_.absolute_tolerance);
   }
 
   /// Adams takes steps that are short for what decays fastest, though it has long decayed: BDF does

@@ -149,7 +149,7 @@ struct SimulationOptions {
   /// [1e-15, 1e-2].
   double absolute_tolerance = 1e-10;
   /// Loop error, dimensionless, beyond which the run is brought back on its loops, [1e-13, 1e-3];
-  /// 0: ten times the larger tolerance above. Results are always closed to 1e-12.
+  /// 0: ten times what the tolerances above leave of the coordinates. Results are closed to 1e-12.
   double drift_tolerance = 0;
   double max_step = 0;          ///< [s]; 0: none
   long max_steps = 10'000'000;  ///< of the integrator, > 0
