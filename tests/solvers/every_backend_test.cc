@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "support/needs.h"
 #include "textbook_problems.h"
 #include "vmech/solvers/backend.h"
 
@@ -69,7 +70,7 @@ TEST_P(EveryProblemEveryBackend, FindsTheKnownSolution) {
   const TextbookProblem& known = TextbookProblems()[index];
   const auto problem = known.make();
   const Summary summary = Solve(backend, *problem, Patient(), known.start);
-  if (summary.status == SolveStatus::kUnavailable) GTEST_SKIP() << summary.message;
+  VMECH_NEEDS(summary.status != SolveStatus::kUnavailable, summary.message);
   SCOPED_TRACE(summary.FullReport());
   if (backend == Backend::kKinsol && known.solution.size() > 0 &&
       HasActiveBound(*problem, known.solution)) {
@@ -118,7 +119,7 @@ bool IsOwn(Backend backend) {
 TEST_P(EveryBackend, NeverCallsAnInfeasibleProblemSolved) {
   for (const TextbookProblem& impossible : InfeasibleProblems()) {
     const Summary summary = Solve(GetParam(), *impossible.make(), StoppingRule{}, impossible.start);
-    if (summary.status == SolveStatus::kUnavailable) GTEST_SKIP() << summary.message;
+    VMECH_NEEDS(summary.status != SolveStatus::kUnavailable, summary.message);
     SCOPED_TRACE(impossible.name + "\n" + summary.FullReport());
     if (IsOwn(GetParam())) {
       EXPECT_EQ(summary.status, SolveStatus::kInfeasible);
@@ -144,7 +145,7 @@ TEST_P(EveryBackend, ReturnsMultipliersThatBalanceTheGradient) {
   const TextbookProblem& known = FindProblem("FourBarPulledOffItsPath");
   const auto problem = known.make();
   const Summary summary = Solve(GetParam(), *problem, StoppingRule{}, known.start);
-  if (summary.status == SolveStatus::kUnavailable) GTEST_SKIP() << summary.message;
+  VMECH_NEEDS(summary.status != SolveStatus::kUnavailable, summary.message);
   VectorXd r(2), c(2);
   MatrixXd J(2, 3), C(2, 3);
   problem->Evaluate(known.solution, &r, &J, &c, &C);

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "support/needs.h"
 #include "vmech/base/late_library.h"
 
 namespace vmech::minimise_test {
@@ -38,7 +39,7 @@ class EveryMethod : public testing::TestWithParam<ProgramMethod> {
  protected:
   void SetUp() override {
     const LateLibrary package(GetParam() == ProgramMethod::kIpopt ? "ipopt" : "nlopt");
-    if (!package.loaded()) GTEST_SKIP() << package.error();
+    VMECH_NEEDS(package.loaded(), package.error());
   }
   ProgramResult Solve() {
     ProgramOptions options;
