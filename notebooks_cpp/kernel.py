@@ -10,6 +10,7 @@ wrote itself. Cells that begin with an #include stand in front of main, all othe
 import contextlib
 import fcntl
 import json
+import os
 import pathlib
 import re
 import shutil
@@ -17,10 +18,12 @@ import subprocess
 import sys
 import tempfile
 
-from ipykernel.kernelapp import IPKernelApp
-from ipykernel.kernelbase import Kernel
+# What ipykernel carries to debug Python would warn, of Python.
+os.environ.setdefault("PYDEVD_DISABLE_FILE_VALIDATION", "1")
+from ipykernel.kernelapp import IPKernelApp  # noqa: E402
+from ipykernel.kernelbase import Kernel  # noqa: E402
 
-import chapter
+import chapter  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 TARGET = "notebook_cells"
