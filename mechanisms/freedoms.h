@@ -16,22 +16,22 @@ struct Freedoms {
   std::vector<bool> rotates;  ///< per freedom, in the order of the joint's lists
 };
 
-/// The freedoms of a joint of a type.
+/// The freedoms of a joint of this type; the same object at every call.
 const Freedoms& FreedomsOfType(JointType type);
 
-/// Is any freedom a rotation?
+/// True if at least one freedom of this joint type is a rotation.
 bool Rotates(JointType type);
 
-/// Which lengths of LoadFriction a joint type has a use for.
+/// The lengths of LoadFriction that the friction law of a joint type uses.
 struct FrictionKeys {
-  bool radius, thrust_radius, length, width;  ///< each: has a use for it
+  bool radius, thrust_radius, length, width;  ///< true: the law uses the length of this name
 };
-/// Of a joint of a type.
+/// The lengths that a joint of this type uses.
 FrictionKeys FrictionKeysOf(JointType type);
 
-/// A turn about, or a shift along, an axis of the joint's frame: 0, 1, 2 for x, y, z.
+/// A turn about, or a shift along, an axis of the joint's frame.
 struct ElementaryFreedom {
-  bool rotates;  ///< a turn, else a shift
+  bool rotates;  ///< true: a turn about the axis; false: a shift along it
   int axis;      ///< 0, 1, 2 for x, y, z
 };
 
@@ -50,7 +50,8 @@ std::vector<std::string> NamesOfFreedoms(JointType type);
 /// The index of a freedom by its name; -1 if the type has none of that name.
 int FindFreedom(JointType type, std::string_view name);
 
-/// The cyclic permutation of the axes that brings z onto the given one.
+/// The rotation that permutes the axes cyclically and brings z onto the given axis (0, 1, 2 for x,
+/// y, z).
 Matrix3d ZOnto(int axis);
 
 }  // namespace vmech

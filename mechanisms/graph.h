@@ -19,7 +19,7 @@ struct SpanningTree {
   std::vector<int> cuts;         ///< indices of the cut joints, in file order
 };
 
-/// Which joints the tree keeps, and which it cuts.
+/// Which joints the spanning tree keeps, and which it cuts.
 struct SpanningTreeOptions {
   /// Joints that must not be cut (the driven ones). A preferred cut that is also kept stays whole.
   std::vector<int> keep;

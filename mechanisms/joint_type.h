@@ -4,7 +4,8 @@
 
 namespace vmech {
 
-/// The kinds of joints and how far each leaves its links free.
+/// The kinds of joints, and the motions of the second anchor against the first that each leaves
+/// free.
 enum class JointType {
   kRevolute,     ///< about z
   kPrismatic,    ///< along z
@@ -18,10 +19,10 @@ enum class JointType {
 
 /// The word used in files, "revolute".
 std::string_view NameOf(JointType type);
-/// Freedoms of a joint, f = 0..3.
+/// The number of freedoms of a joint, f = 0..3.
 int FreedomsOf(JointType type);
-/// Values in `Joint::start`: the freedoms, or 4 (a unit quaternion w, x, y, z) for a spherical
-/// joint.
+/// The number of values in `Joint::start`: one per freedom, but 4 (a unit quaternion w, x, y, z)
+/// for a spherical joint.
 int CoordinatesOf(JointType type);
 
 }  // namespace vmech

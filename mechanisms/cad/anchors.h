@@ -14,7 +14,7 @@ struct BodyFrame {
   int body = -1;      ///< index of the body; -1: directly in the file
   std::string frame;  ///< as the file calls it
   FrameName name;     ///< its name, taken apart
-  Posed X_WA;         ///< turned if its name ends in _inv
+  Posed X_WA;         ///< pose in the axes of the file; turned already if its name ends in _inv
 };
 
 /// Two frames of one joint on two bodies.

@@ -11,7 +11,7 @@ namespace vmech {
 /// What moves as one: a link to be.
 struct CadBody {
   std::string name;                 ///< of the subassembly or part
-  Posed X_WL;                       ///< the axes of the subassembly or part
+  Posed X_WL;                       ///< the axes of the subassembly or part in those of the file
   std::vector<int> parts;           ///< indices in CadAssembly
   std::vector<int> frames;          ///< those that vmech knows (frame_name.h)
   std::vector<int> fasteners = {};  ///< those of `parts` that are screws, rivets, pins

@@ -10,7 +10,7 @@
 
 namespace vmech {
 
-/// Of a part whose material nobody names.
+/// The density of a part whose material nobody names.
 constexpr double kUsualDensity = 7850;  ///< [kg/m^3]: steel
 
 /// Where densities come from, in this order: the user's word for a part, a product, a body or a
@@ -18,10 +18,10 @@ constexpr double kUsualDensity = 7850;  ///< [kg/m^3]: steel
 struct DensityOptions {
   /// Name (of a part, product, body or material) and density [kg/m^3], 1e-3..1e5.
   std::vector<std::pair<std::string, double>> by_name;
-  /// Of everything else [kg/m^3], 1e-3..1e5; none: kUsualDensity, said to be assumed.
+  /// The density of everything else [kg/m^3], 1e-3..1e5; none: kUsualDensity, reported as assumed.
   std::optional<double> fallback;
 
-  /// @throws std::invalid_argument
+  /// @throws std::invalid_argument naming the density that is out of its range.
   void Validate() const;
 };
 

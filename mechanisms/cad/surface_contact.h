@@ -14,16 +14,16 @@ struct ContactOptions {
   /// Greatest gap or offset between surfaces in contact [m], 1e-7..1e-2. Larger finds looser fits,
   /// and neighbours that do not touch. A gap of exactly this is in contact.
   double tolerance = 1e-4;
-  /// Greatest difference of the radii of bore and shaft, of the radius, 0..0.5.
+  /// Greatest difference of the radii of bore and shaft, as a share of the radius [-], 0..0.5.
   double clearance = 0.02;
-  /// The same for screws, rivets and pins, either way, 0..0.5: clearance holes are up to a quarter
-  /// wider, tapped holes drawn at their core a fifth narrower.
+  /// The same for screws, rivets and pins, either way [-], 0..0.5: clearance holes are up to a
+  /// quarter wider, tapped holes drawn at their core a fifth narrower.
   double fastener_play = 0.3;
-  /// Greatest end play of a shaft between two shoulders, of its diameter, 0..0.5. Larger takes
-  /// looser stops for the end of an axial motion.
+  /// Greatest end play of a shaft between two shoulders, as a share of its diameter [-], 0..0.5. A
+  /// larger one takes looser stops for the end of an axial motion.
   double end_play = 0.1;
 
-  /// @throws std::invalid_argument
+  /// @throws std::invalid_argument naming field, value and range.
   void Validate() const;
 };
 
@@ -65,7 +65,7 @@ constexpr double kDrawn = 1e-9;
 
 /// The direction of a cylinder, or the outward normal of a plane.
 Vector3d AxisOf(const CadFeature& feature);
-/// [m]
+/// The distance of a point from the axis of a cylinder [m].
 double DistanceFromAxis(const Vector3d& p, const CadFeature& cylinder);
 /// The stretch of an axis that two cylinders on it share, from the middle of the first [m].
 std::optional<std::pair<double, double>> SharedStretch(const CadFeature& first,

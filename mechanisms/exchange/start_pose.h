@@ -20,7 +20,7 @@ struct StartAxis {
   bool rotates = true;                       ///< about the line, else along it
   Vector3d direction_W = Vector3d::UnitZ();  ///< of length 1
   Vector3d point_W = Vector3d::Zero();       ///< on the line [m]
-  double coordinate = 0;                     ///< at the start
+  double coordinate = 0;                     ///< of the freedom at the start [m] or [rad]
 };
 
 /// The freedoms of a joint from its first anchor to its second; none for a spherical joint or a

@@ -40,8 +40,8 @@ struct Unit {
   friend Unit operator/(const Unit& a, const Unit& b) {
     return {a.factor / b.factor, a.dimension / b.dimension};
   }
-  template <typename Derived>
   /// The figures in SI, without a dimension.
+  template <typename Derived>
   friend auto operator*(const Unit& unit, const Eigen::MatrixBase<Derived>& figures) {
     return unit.factor * figures;
   }

@@ -107,7 +107,7 @@ class Node {
   double Number(const Unit& asked, double fallback = 0) const;
   double Positive(const Unit& asked, double fallback = 1) const;     ///< > 0
   double NonNegative(const Unit& asked, double fallback = 0) const;  ///< >= 0
-  /// a list of three
+  /// A list of three figures in SI.
   Vector3d Vector3(const Unit& asked, const Vector3d& fallback = Vector3d::Zero()) const;
   /// A list of exactly as many numbers as there are units, each in its own; for one a bare number
   /// will do. Empty if absent or wrong.
@@ -167,7 +167,7 @@ class Document {
   void ReportOnce(const FileError& error);
   bool ok() const { return errors_.empty(); }            ///< nothing was reported
   size_t error_count() const { return errors_.size(); }  ///< reported so far
-  /// keeps the first `count`
+  /// Keeps the first `count` errors and forgets the others.
   void ForgetErrorsAfter(size_t count) { errors_.resize(std::min(count, errors_.size())); }
   /// @throws FileErrors with everything reported so far, in the order of the lines; or returns.
   void ThrowErrors();
@@ -184,7 +184,7 @@ class Document {
   };
   /// Those who read such a file say so.
   void NoteNamedFile(NamedFile file) { named_files_.push_back(std::move(file)); }
-  /// in the order in which they were read
+  /// The files that were noted, in the order in which they were read.
   const std::vector<NamedFile>& named_files() const { return named_files_; }
 
  private:

@@ -43,7 +43,7 @@ class MechanismSource {
   /// What the parameters are, as of the last reading.
   const NamedQuantities<double>& values() const { return scope_.values; }
   std::vector<StatedParameter> stated() const;  ///< with their values of the last reading
-  /// places where a parameter stands
+  /// The places where parameters stand.
   const std::vector<ParameterUse>& uses() const { return document_.uses(); }
 
   /// The mechanism for the parameters as they are declared and set.

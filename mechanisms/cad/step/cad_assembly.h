@@ -27,7 +27,7 @@ enum class CadSurface {
   kBore,    ///< a cylinder with the material outside
   kBall,    ///< a sphere with the material inside
   kSocket,  ///< a sphere with the material outside
-  kPlane,
+  kPlane,   ///< a plane
 };
 
 /// A surface by which a part can move on another: whole cylinders (not fillets), spheres, planes.

@@ -10,7 +10,7 @@ struct StepReadOptions {
   /// Read files with faulty entities, too. Parts may be missing then, or stand in wrong places.
   bool tolerate_faults = false;
 
-  /// @throws std::invalid_argument
+  /// @throws std::invalid_argument naming field, value and range.
   void Validate() const;
 };
 
