@@ -8,7 +8,7 @@ namespace vmech {
 /// in a struct.
 using Double4 = double __attribute__((vector_size(32), aligned(16)));
 
-/// The size of a column that is filled up to whole registers.
+/// The size of a column that is filled up to whole registers: the next multiple of four.
 constexpr int PaddedSize(int size) {
   return (size + 3) / 4 * 4;
 }

@@ -116,14 +116,14 @@ using Dual = DualOf<double>;
 /// Whether T is a number with derivatives.
 template <typename T>
 inline constexpr bool kIsDual = false;
-/// It is.
+/// A DualOf is a number with derivatives.
 template <typename N>
 inline constexpr bool kIsDual<DualOf<N>> = true;
 
-/// As many as its value has.
+/// A dual has as many lanes as its value.
 template <typename N>
 inline constexpr int kLanesOf<DualOf<N>> = kLanesOf<N>;
-/// The value alone, of one lane.
+/// The value, without the slope, of one lane.
 template <typename N>
 double Lane(const DualOf<N>& number, int lane) {
   return Lane(number.value, lane);

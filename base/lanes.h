@@ -21,7 +21,7 @@ inline void SinCos(double angle, double* sine, double* cosine) {
   *cosine = std::cos(angle);
 }
 
-/// Whether it holds in every lane.
+/// Whether a condition holds in every lane.
 inline bool AllLanes(bool condition) {
   return condition;
 }

@@ -6,26 +6,26 @@
 
 namespace vmech {
 
-/// Three numbers.
+/// A vector of three numbers of type T.
 template <typename T>
 using Vector3 = Eigen::Matrix<T, 3, 1>;
-/// Six numbers, the linear part first.
+/// A vector of six numbers of type T: [linear; angular] or [force; moment].
 template <typename T>
 using Vector6 = Eigen::Matrix<T, 6, 1>;
-/// 3 x 3 numbers.
+/// A 3 x 3 matrix of numbers of type T.
 template <typename T>
 using Matrix3 = Eigen::Matrix<T, 3, 3>;
-/// A matrix of any size.
+/// A matrix of any size of numbers of type T.
 template <typename T>
 using MatrixX = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
-/// A vector of any length.
+/// A vector of any length of numbers of type T.
 template <typename T>
 using VectorX = Eigen::Matrix<T, Eigen::Dynamic, 1>;
 using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-/// Six doubles, the linear part first.
+/// Six doubles: [linear; angular] or [force; moment].
 using Vector6d = Vector6<double>;
 /// 6 x 6 doubles.
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
@@ -48,7 +48,7 @@ struct Pose {
   Vector3<T> operator*(const Vector3<T>& point) const { return R * point + p; }
   Pose inverse() const { return {R.transpose(), -(R.transpose() * p)}; }  ///< X_BA
 
-  /// With numbers of another type.
+  /// The same pose with numbers of another type.
   template <typename S>
   Pose<S> cast() const {
     return {R.template cast<S>(), p.template cast<S>()};
@@ -63,15 +63,15 @@ struct Wrench {
   Vector3<T> force = Vector3<T>::Zero();   ///< [N]
   Vector3<T> moment = Vector3<T>::Zero();  ///< [N m]
 
-  /// About the same point.
+  /// Both about the same point, in the same axes.
   Wrench operator+(const Wrench& w) const { return {force + w.force, moment + w.moment}; }
-  /// About the same point.
+  /// Both about the same point, in the same axes.
   Wrench operator-(const Wrench& w) const { return {force - w.force, moment - w.moment}; }
   Wrench operator-() const { return {-force, -moment}; }             ///< that of the reaction
   Wrench& operator+=(const Wrench& w) { return *this = *this + w; }  ///< about the same point
   Wrench& operator-=(const Wrench& w) { return *this = *this - w; }  ///< about the same point
 
-  /// The same wrench about a point P when it was about O; p_PO = O - P.
+  /// This wrench, which is about a point O, about a point P; p_PO leads from P to O [m].
   Wrench ShiftedBy(const Vector3<T>& p_PO) const { return {force, moment + p_PO.cross(force)}; }
   /// The same wrench in the axes of a frame whose orientation is R (columns: its axes here).
   Wrench In(const Matrix3<T>& R) const { return {R.transpose() * force, R.transpose() * moment}; }

@@ -18,7 +18,7 @@ struct AugmentedLagrangianOptions {
   double weight = 1e2;
   /// Largest lambda [-], in [weight, 1e7]. Above 1e4 rounding begins to win.
   double max_weight = 1e4;
-  double damping = 1e-12;                                     ///< as PenaltyOptions::damping
+  double damping = 1e-12;  ///< as PenaltyOptions::damping, in [1e-14, 1]
   double max_step = std::numeric_limits<double>::infinity();  ///< as PenaltyOptions::max_step
   /// `Solve` (not `Step`) uses the problem's second derivatives if it has them: it then converges
   /// where Gauss-Newton crawls, at the price of one Curvature() an iteration.

@@ -22,7 +22,7 @@ struct NullspaceOptions {
   /// Pivots of C below this, relative to the largest, count as zero, in [1e-14, 1e-2]. Raise it
   /// for noisy Jacobians; lower it near dead centres.
   double rank_tolerance = 1e-9;
-  /// Longest step, max |dx_i| [unit of the tangent], > 0. Lower it to stay on one branch.
+  /// Longest step, max |dx_i| [unit of the tangent], >= 1e-12. Lower it to stay on one branch.
   double max_step = std::numeric_limits<double>::infinity();
   /// Use the problem's second derivatives if it has them: quadratic convergence.
   bool use_second_derivatives = true;

@@ -20,7 +20,7 @@ struct PenaltyOptions {
   /// Least Marquardt damping, relative to the diagonal of H, in [1e-14, 1]. Raise it where H is
   /// nearly singular and steps wander.
   double damping = 1e-12;
-  /// Longest step, max |dx_i| [unit of the tangent], > 0. Lower it to stay on one branch.
+  /// Longest step, max |dx_i| [unit of the tangent], >= 1e-12. Lower it to stay on one branch.
   double max_step = std::numeric_limits<double>::infinity();
   StoppingRule stopping;  ///< when it counts as solved
 

@@ -17,7 +17,7 @@ struct StartsOptions {
   /// of c are wide.
   double weight = 10;
   int steps = 15;  ///< of descent from each point before it is ranked, in [0, 1e4]
-  /// Starts that differ by less in every coordinate count as one, > 0.
+  /// Starts that differ by less in every coordinate count as one, in [1e-300, 1e300].
   double separation = 0.05;
 
   /// Throws std::invalid_argument with the name, the value and the range of what is wrong.

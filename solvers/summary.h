@@ -45,7 +45,7 @@ struct Summary {
   int jacobian_evaluations = 0;               ///< of J or C
   double seconds = 0;                         ///< wall time of the solve, our judgement left out
 
-  /// X is a solution within the stopping rule.
+  /// True if x is a solution within the stopping rule.
   bool converged() const { return status == SolveStatus::kConverged; }
   std::string BriefReport() const;  ///< one line
   std::string FullReport() const;   ///< one page

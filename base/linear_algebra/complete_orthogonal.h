@@ -34,7 +34,7 @@ class CompleteOrthogonal {
 
   int rank() const { return rank_; }                        ///< of the C factored last
   ConstMap V() const { return {V_.data(), m_, rank_}; }     ///< [m, rank], orthonormal columns
-  ConstMap L() const { return {L_.data(), rank_, rank_}; }  ///< [rank, rank], lower triangular
+  ConstMap L() const { return {L_.data(), rank_, rank_}; }  ///< [rank, rank], upper triangular
   ConstMap Y() const { return {Q_.data(), n_, rank_}; }  ///< [n, rank], orthonormal: what C' spans
   /// [n, n - rank], orthonormal: C Z = 0
   ConstMap Z() const { return {Q_.data() + n_ * rank_, n_, n_ - rank_}; }

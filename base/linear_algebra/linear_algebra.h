@@ -7,8 +7,8 @@
 
 namespace vmech {
 
-/// The dense decompositions that the offline analyses use, each compiled once. None in the pose
-/// kernels.
+// The dense decompositions that the offline analyses use, each compiled once. The pose kernels use
+// none of them.
 
 /// x of H x = b by L D L' with pivoting; H symmetric positive semidefinite.
 VectorXd SolveSymmetric(const MatrixXd& H, const VectorXd& b);
