@@ -4,18 +4,19 @@
 
 namespace vmech {
 
-/// From one configuration to another: the way [nv; rad, m] that leads from a to b, each joint by
-/// the shorter way round; MoveCoordinates goes it. No allocation.
+/// The displacement [nv; rad, m] that leads from configuration a to b [nq], each joint by the
+/// shorter way round: MoveCoordinates takes a there. No allocation.
 void CoordinateDifference(const KinematicTree& tree, const VectorXd& a, const VectorXd& b,
                           VectorXd* difference) noexcept;
-/// The same in radians and characteristic lengths.
+/// The same displacement in radians and characteristic lengths [nv].
 VectorXd ConfigurationDifference(const KinematicTree& tree, const VectorXd& a, const VectorXd& b);
 
 /// How far two configurations are apart: the norm of the differences of all coordinates of the
 /// tree, in radians (whole turns do not count) and characteristic lengths.
 double ConfigurationDistance(const KinematicTree& tree, const VectorXd& a, const VectorXd& b);
 
-/// Characteristic lengths or radians to the units of each velocity [nv].
+/// Factors [nv] that turn a displacement in radians and characteristic lengths into radians and
+/// metres: the characteristic length [m] for translations, 1 for rotations.
 VectorXd TangentScale(const KinematicTree& tree);
 
 }  // namespace vmech

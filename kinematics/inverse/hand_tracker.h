@@ -13,9 +13,9 @@ namespace vmech {
 /// What became of one target.
 enum class TrackStatus {
   kNotRun,
-  kFollowed,    ///< the pose nearest to the hand, on the branch
+  kFollowed,    ///< reached the pose nearest to the hand, on the branch
   kCatchingUp,  ///< closed and on the branch, but the step bound or the iterations were spent
-  kDeadCentre,  ///< the nearest pose is a dead centre: close beside it, on its side
+  kDeadCentre,  ///< held: the nearest pose is a dead centre; stands close beside it, on this side
   kJump,        ///< held: the solver arrived on another branch
   kLost,        ///< held: the loops did not close, or values are not finite
 };
@@ -23,7 +23,7 @@ enum class TrackStatus {
 /// The status in words.
 std::string_view NameOf(TrackStatus status);
 
-/// How closely a hand is followed, and with how much work a target.
+/// How closely a hand is followed, and how much work is spent on each target.
 struct TrackOptions {
   InverseKinematicsOptions kinematics;  ///< what the hand's error is measured by
   /// lambda of paper eq. (8) against the dimensionless hand error [-], 1..1e4. The multiplier
@@ -49,15 +49,15 @@ struct TrackOptions {
 /// What became of the targets since the tracker began.
 struct TrackSummary {
   long targets = 0;          ///< all of them
-  long followed = 0;         ///< reached, or as near as the mechanism comes
-  long catching_up = 0;      ///< not yet at the nearest pose
-  long dead_centre = 0;      ///< targets at which the pose was held, by reason
-  long jumps = 0;            ///< the nearest pose was on another branch
-  long lost = 0;             ///< no step led nearer
-  long rescued = 0;          ///< needed the line search
-  double worst_closure = 0;  ///< largest |c_i| of all poses returned
+  long followed = 0;         ///< TrackStatus::kFollowed
+  long catching_up = 0;      ///< TrackStatus::kCatchingUp: not yet at the nearest pose
+  long dead_centre = 0;      ///< TrackStatus::kDeadCentre: held at or beside a dead centre
+  long jumps = 0;            ///< TrackStatus::kJump: held, the solver arrived on another branch
+  long lost = 0;             ///< TrackStatus::kLost: held, loops open or values not finite
+  long rescued = 0;          ///< targets that needed the line search, whatever became of them
+  double worst_closure = 0;  ///< largest loop error of the poses taken, lengths over L [-]
 
-  /// Targets at which the pose stayed as it was.
+  /// Targets at which the mechanism did not follow: it stayed, or stands beside a dead centre.
   long held() const { return dead_centre + jumps + lost; }
   std::string BriefReport() const;  ///< one line
 };
@@ -89,7 +89,8 @@ class HandTracker {
   [[nodiscard]] TrackStatus Advance(const Posed& X_WH) noexcept;
 
   const VectorXd& q() const { return q_; }  ///< the last good pose
-  /// Of q(), as Summary::multipliers; InverseKinematics::LoopMultipliers makes wrenches of them.
+  /// The multipliers at q(), as Summary::multipliers; InverseKinematics::LoopMultipliers makes
+  /// wrenches of them.
   const VectorXd& multipliers() const { return workspace_.multipliers; }
   InverseKinematics& kinematics() { return problem_; }      ///< the problem that is solved
   const TrackSummary& summary() const { return summary_; }  ///< since the tracker began

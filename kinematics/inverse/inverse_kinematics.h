@@ -19,7 +19,7 @@ struct InverseKinematicsOptions {
   /// Joint limits become bounds.
   bool joint_limits = true;
 
-  /// Throws std::invalid_argument with the name, the value and the range of what is wrong.
+  /// @throws std::invalid_argument naming the field, its value and its range.
   void Validate() const;
 };
 
@@ -29,8 +29,8 @@ struct InverseKinematicsOptions {
 ///
 /// as a problem for any solver. e1 = [p_H - p_G; rotation from G to H], world axes, leads from the
 /// mechanism to the hand; e2 is that of LoopErrors, all loops. x are the coordinates of the tree
-/// and a step dx is a velocity: Plus is Integrate. What the solvers see is dimensionless, with the
-/// characteristic length L and the energy E = k L^2, k the mean of the stiffnesses that are not
+/// and a step dx is a velocity: Plus is MoveCoordinates. What solvers see is dimensionless, with
+/// the characteristic length L and the energy E = k L^2, k the mean of the stiffnesses that are not
 /// zero (of the positions, or of the rotations over L^2 if the positions have none):
 ///
 ///   r = (K/E)^(1/2) e1      J = dr/dv, exact; -(K/E)^(1/2) J_grasp for the positional rows
@@ -44,8 +44,10 @@ struct InverseKinematicsOptions {
 /// do not allocate.
 class InverseKinematics final : public ConstrainedLeastSquares {
  public:
-  /// Keeps a reference to the tree. @throws std::invalid_argument as Options::Validate, or if the
-  /// stiffness leaves no row.
+  /// Keeps a reference to the tree.
+  /// @throws std::invalid_argument as InverseKinematicsOptions::Validate, or if the stiffness
+  /// leaves
+  ///         no row.
   InverseKinematics(const KinematicTree& tree, const GraspFrame& grasp,
                     const InverseKinematicsOptions& options = {});
 
@@ -63,12 +65,11 @@ class InverseKinematics final : public ConstrainedLeastSquares {
   const Vector6d& stiffness() const { return K_; }     ///< K; zero in rows that are left out
   double energy() const { return energy_; }            ///< E [J]
 
-  /// In SI units at q: X_WG, e1 [m, rad] (whole, for a point grasp too), K e1 [N, N m] on the
-  /// grasp at Go, e2 [rows; m, rad].
-  Posed GraspPose(const VectorXd& q);
-  Vector6d HandError(const VectorXd& q);   ///< e1 [6]
-  Vector6d HandWrench(const VectorXd& q);  ///< K e1 [6]
-  VectorXd LoopError(const VectorXd& q);   ///< e2 [rows]
+  // At q, in SI units:
+  Posed GraspPose(const VectorXd& q);      ///< X_WG
+  Vector6d HandError(const VectorXd& q);   ///< e1 [6; m, rad], whole for a point grasp too
+  Vector6d HandWrench(const VectorXd& q);  ///< K e1 [6; N, N m] on the grasp about Go, world axes
+  VectorXd LoopError(const VectorXd& q);   ///< e2 [rows; m, rad]
   /// E W mu [rows; N, N m] from the multipliers of a Summary.
   VectorXd LoopMultipliers(const VectorXd& mu) const;
   /// The state of the tree at the last q that one of the above was called with.

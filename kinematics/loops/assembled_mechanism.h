@@ -24,32 +24,34 @@ struct AssembledMechanism {
   Mechanism mechanism;
   AssemblySummary summary;  ///< closed, or why not
   double correction = 0;    ///< as Reconciliation::correction; 0 if no anchor was moved
-  /// To which its loops close in all poses; between those of Reconcile's walk some rounding is
-  /// left.
+  /// The loop error, dimensionless, to which its loops close at all poses: where anchors were
+  /// moved, some rounding is left between the poses that Reconcile walked over.
   double closure_tolerance = AssemblyOptions().tolerance;
   std::vector<AxisMisfit> misfits;       ///< what was moved, in words of the drawing
-  std::vector<MovedStart> moved_starts;  ///< of stated starts; of all after another start
+  std::vector<MovedStart> moved_starts;  ///< the stated ones; all, if another start had to be found
 
   /// What a user should know, a sentence each: starts that were moved, another start that had to be
   /// found, figures that are rounded by more than 1e-9, joints that start outside their limits.
   std::vector<std::string> Notes() const;
 };
 
-/// What AssembleMechanism closes loops by, and what it leaves alone.
+/// How AssembleMechanism closes loops, and what it leaves alone.
 struct AssembleOptions {
   AssemblyOptions closing;        ///< when loops count as closed
   std::vector<int> fixed_joints;  ///< whose start values stay as given
 };
 
-/// Closes the loops of a mechanism, the same for every use of it: the loops are cut where no start
-/// is stated (and then as FindSpanningTree cuts), closed as Assemble does, and where rounded
-/// figures let them close nowhere, or only at poses at which nothing moves, as Reconcile does. What
-/// is closed is decided by Mechanism::tolerance.
+/// Closes the loops of a mechanism, the same for every use of it. They are cut where no start is
+/// stated (and then as FindSpanningTree cuts) and closed as Assemble does; where rounded figures
+/// let them close nowhere, or only at poses at which nothing moves, Reconcile moves the anchors, by
+/// no more than Mechanism::tolerance.
 /// @throws std::invalid_argument as FindSpanningTree and AssemblyOptions::Validate.
 AssembledMechanism AssembleMechanism(const Mechanism& mechanism,
                                      const AssembleOptions& options = {});
 
-/// The same, or std::runtime_error with the joint, the gap and the remedy where loops do not close.
+/// The same for those who need closed loops.
+/// @throws std::runtime_error with the joint, the gap and the remedy where loops do not close;
+///         std::invalid_argument as AssembleMechanism.
 AssembledMechanism RequireAssembled(const Mechanism& mechanism,
                                     const AssembleOptions& options = {});
 

@@ -9,7 +9,8 @@ namespace vmech {
 
 /// When loops count as closed, and how Assemble gets there.
 struct AssemblyOptions {
-  double tolerance = 1e-13;  ///< largest loop error that counts as closed, (0, 1e-3]
+  double tolerance =
+      1e-13;  ///< largest loop error, dimensionless, that counts as closed, (0, 1e-3]
   int max_iterations = 200;  ///< more for bad guesses, 1..10000
   /// Weight of a loop error against a departure from the wanted coordinates (paper's lambda,
   /// squared), [1, 1e8]. The multiplier update makes the result independent of it.
@@ -35,8 +36,8 @@ struct AssemblySummary {
   double error = 0;           ///< and of the returned ones; dimensionless as LargestLoopError
   int starts = 1;             ///< that were tried
   int worst_joint = -1;       ///< cut joint with the largest error
-  double worst_distance = 0;  ///< [m] and
-  double worst_angle = 0;     ///< [rad] between its anchors
+  double worst_distance = 0;  ///< that is left between its anchors [m]
+  double worst_angle = 0;     ///< that is left between its anchors [rad]
   /// What is wrong, at which joint and by how much; empty if closed.
   std::string message;
 };

@@ -26,8 +26,9 @@ class DependentSolver {
 
   /// Needs LoopJacobian in ws.
   void Factor(const TreeWorkspace<T>& ws);
-  /// Dead centre: sin^2 of the angle by which the least independent dependent velocity is
-  /// independent of the others; 0 if the loops do not determine it here.
+  /// How far the pose is from a dead centre: sin^2 of the smallest angle between the column of C of
+  /// a dependent velocity and the span of those before it; 0 if the loops do not determine that
+  /// velocity here.
   const T& smallest_pivot() const { return normal_.smallest_pivot(); }
   /// The same beside given sizes [nv] in place of the columns' own, which may all but vanish: the
   /// squared distance of a column of W C_u from the span of the others, over its size.
@@ -63,11 +64,11 @@ class DependentSolver {
 template <typename T>
 void FreeMotions(const TreeWorkspace<T>& ws, DependentSolver<T>* dependents, MatrixX<T>* N);
 
-/// Positions: poses, loop errors and, if asked, C.
+/// The poses and loop errors at coordinates q [nq] and, if asked for, C.
 template <typename T>
 void EvaluatePose(const KinematicTree& tree, const T* q, TreeWorkspace<T>* ws,
                   bool with_jacobian = true);
-/// The same of a vector q [nq].
+/// The same for a vector q [nq].
 void EvaluatePose(const KinematicTree& tree, const VectorXd& q, TreeWorkspace<double>* ws,
                   bool with_jacobian = true);
 

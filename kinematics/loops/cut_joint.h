@@ -7,8 +7,8 @@
 
 namespace vmech {
 
-/// What a cut joint does: its coordinates, and how fast they change. F and M are its anchors on its
-/// first and second link. LoopErrors has been called.
+// What a cut joint does: its coordinates, and how fast they change. F and M are its anchors on its
+// first and second link. LoopErrors has been called.
 
 /// Coordinates of a cut joint that has turned and shifted freely, from the poses of its anchors
 /// [FreedomsOf(type)]; for a spherical joint the rotation vector. Angles within +-pi.
@@ -21,7 +21,7 @@ struct CutJointFreedoms {
   int count = 0;          ///< 0 to 3
   Vector6<T> twist_F[3];  ///< the first `count` of them
 };
-/// Of the joint at which a loop is cut, in the pose that `state` is of.
+/// The freedoms of the joint at which a loop is cut, at the pose that `state` is of.
 template <typename T>
 CutJointFreedoms<T> FreedomsOfCutJoint(const Loop& loop, const LoopState<T>& state);
 

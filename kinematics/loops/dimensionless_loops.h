@@ -8,13 +8,14 @@
 
 namespace vmech {
 
-/// Characteristic lengths or radians per unit of each velocity [nv].
+/// What counts as one of each velocity in dimensionless equations [nv]: the characteristic length
+/// [m] for a translation, 1 rad for a rotation.
 VectorXd VelocityScale(const KinematicTree& tree);
 
 /// The scaled loop Jacobian at q: rows and columns of lengths measured in characteristic lengths.
 MatrixXd DimensionlessLoopJacobian(const KinematicTree& tree, const VectorXd& q);
 
-/// The rows of a loop in it, by its columns. Needs LoopJacobian in ws.
+/// The rows of one loop in DimensionlessLoopJacobian, by their columns. Needs LoopJacobian in ws.
 RowBlock DimensionlessLoopRows(const KinematicTree& tree, const TreeWorkspace<double>& ws,
                                size_t loop);
 

@@ -14,9 +14,9 @@ struct LoopCluster {
   /// since its pose does not matter to them. Of the mechanism only what is cut here is there: its
   /// joints are those of the loops, in their order; nodes have none, and there are no links.
   KinematicTree tree;
-  std::vector<int> nodes;   ///< of the whole tree, by node
+  std::vector<int> nodes;   ///< for each node of the cluster its index in the whole tree
   std::vector<int> q, v;    ///< indices in the whole tree's q [tree.nq] and v [tree.nv]
-  std::vector<int> joints;  ///< of the whole mechanism, by loop
+  std::vector<int> joints;  ///< for each loop the index of its joint in the whole mechanism
 };
 
 /// The clusters in the order of their first loops. Coordinates that close no loop are in none.

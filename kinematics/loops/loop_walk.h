@@ -34,7 +34,7 @@ class LoopCloser {
   /// Moves *pose to where no step closes its loops any more, and writes its rank and misfit. False
   /// if it has to go far for that, or the misfit is larger than the given one.
   bool Close(double largest_misfit, WalkedPose* pose);
-  /// dq: dimensionless.
+  /// Moves q [nq] by a dimensionless dq [nv].
   void Move(const VectorXd& dq, VectorXd* q) const;
 
  private:
@@ -64,8 +64,8 @@ struct Walk {
 /// above the misfits on the way. No poses if there is none.
 Walk FindWalk(const KinematicTree& tree, const VectorXd& q, double largest_misfit, int poses);
 
-/// Do some of the joints around every loop move at a closed pose? Judged as in FindNullSpace with
-/// kRankTolerance.
+/// True if at the closed pose q some joints around every loop can move: pivots below kRankTolerance
+/// count as zero, as in FindNullSpace.
 bool EveryLoopMoves(const KinematicTree& tree, const VectorXd& q);
 
 }  // namespace vmech

@@ -63,7 +63,7 @@ Wrenchd WrenchOfMultipliers(const Loop& loop, const LoopState<double>& state, co
 template <typename T>
 ScrewT<T> LoopWrench(const Loop& loop, const LoopState<T>& state, const T* mu);
 
-/// Is equation `row` of a loop one of lengths (in metres)?
+/// True if equation `row` of a loop that a joint of this type closes is one of lengths [m].
 inline bool IsLengthRow(JointType type, int row);
 
 /// Largest loop error, lengths divided by the characteristic length. A loop assembled half a turn
@@ -72,12 +72,12 @@ template <typename T>
 T LargestLoopError(const KinematicTree& tree, const TreeWorkspace<T>& ws);
 
 /// How fast loops open with a parameter: the largest slope of their errors, scaled as
-/// LargestLoopError, and the loop that has it (-1 without loops). Of duals. Needs LoopErrors.
+/// LargestLoopError, and the loop that has it (-1 without loops). For T = Dual. Needs LoopErrors.
 struct LoopOpening {
   double slope = 0;  ///< of the error, per unit of the parameter
   int loop = -1;     ///< index in KinematicTree::loops
 };
-/// Of all loops of the tree, at the pose that ws is of.
+/// The largest over all loops of the tree, at the pose that ws is of.
 template <typename T>
 LoopOpening LargestOpening(const KinematicTree& tree, const TreeWorkspace<T>& ws);
 

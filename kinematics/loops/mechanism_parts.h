@@ -12,7 +12,7 @@ namespace vmech {
 /// characteristic length.
 struct MechanismPart {
   KinematicTree tree;       ///< with its own ground
-  std::vector<int> joints;  ///< of the whole mechanism, by joint
+  std::vector<int> joints;  ///< for each joint of the part its index in the whole mechanism
   std::vector<int> q;       ///< indices in the whole tree's q [tree.nq]
 };
 

@@ -17,10 +17,10 @@ struct Mobility {
   int redundant = 0;              ///< rows - rank: equations that follow from the others
   bool singular_here = false;     ///< the rank is lower at the given pose
   std::vector<bool> joint_moves;  ///< per joint of the mechanism, at any of these poses
-  VectorXd q_general;             ///< the nearby closed pose that the above was read at [nq]
+  VectorXd q_general;             ///< [nq] the closed pose nearby at which the rank was found
 };
 
-/// q must be a closed pose (Assemble).
+/// The mobility at q [nq], which must be a closed pose (Assemble).
 Mobility AnalyseMobility(const KinematicTree& tree, const VectorXd& q);
 
 /// Divides the velocities so that the loop equations determine all that no drive does; freedoms

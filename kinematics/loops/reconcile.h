@@ -18,9 +18,9 @@ struct Reconciliation {
 
 /// How far figures may be moved to let loops close.
 struct ReconcileOptions {
-  /// Loop errors beyond this are no rounding [characteristic lengths, rad], (0, 0.1].
+  /// Loop errors beyond this are not taken for rounding [characteristic lengths, rad], > 0.
   double largest_misfit = 3e-3;
-  int poses = 64;  ///< at which the loops are made to close, about; 4..1000
+  int poses = 64;  ///< about how many poses the loops are made to close at, > 0
 };
 
 /// Makes overconstrained loops close that do not for the rounding of their figures. A planar

@@ -29,11 +29,11 @@ class MotionLaw {
   ///         or the times do not increase; the message names the row (counted from 1).
   static MotionLaw Table(const std::vector<double>& times, const std::vector<double>& values);
 
-  /// One that was not given, as MotionLaw() is: it has no position.
+  /// True for MotionLaw(), a law that was not given: it has no position.
   bool empty() const { return pieces_.empty(); }
   /// Precondition: not empty.
   MotionSample At(double t) const;
-  /// Of the table; zero for a uniform motion.
+  /// The roughness of the table; zero for a uniform motion.
   const TableRoughness& roughness() const { return roughness_; }
 
  private:
@@ -56,8 +56,8 @@ class MotionLaw {
 /// Pose, velocity and acceleration of a hand-held frame in the world.
 struct HandSample {
   Posed X_WH;     ///< pose in the world
-  Vector6d V_WH;  ///< [v; w]
-  Vector6d A_WH;  ///< [a; alpha]
+  Vector6d V_WH;  ///< [v; w] of Ho and H, world axes [m/s, rad/s]
+  Vector6d A_WH;  ///< [a; alpha] of Ho and H, world axes [m/s^2, rad/s^2]
 };
 
 /// How the hand moves: a cubic spline through positions, and one through the rotation vectors
@@ -70,13 +70,13 @@ class HandLaw {
   ///         away from the first.
   static HandLaw Table(const std::vector<double>& times, const std::vector<Posed>& poses);
 
-  /// One that was not given, as HandLaw() is: it has no pose.
+  /// True for HandLaw(), a law that was not given: it has no pose.
   bool empty() const { return position_.empty(); }
   /// Precondition: not empty.
   HandSample At(double t) const;
-  /// Of its positions [m/s^2] and of its rotation vectors [rad/s^2].
+  /// The roughness of its positions [m/s^2].
   TableRoughness position_roughness() const { return Together(position_); }
-  /// Of the rotation vectors.
+  /// The roughness of its rotation vectors [rad/s^2].
   TableRoughness rotation_roughness() const { return Together(rotation_vector_); }
 
  private:

@@ -4,20 +4,20 @@
 
 namespace vmech {
 
-/// A column of six for each velocity.
+/// Six rows and a column for each velocity.
 using Matrix6Xd = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
 /// Poses of all nodes from coordinates q [nq], and the joints' twists; writes X and S. O(n), no
 /// allocation, like all that follow.
 template <typename T>
 void ForwardKinematics(const KinematicTree& tree, const T* q, TreeWorkspace<T>* ws) noexcept;
-/// V from v [nv]. Needs S.
+/// Twists V of all nodes from velocities v [nv]. Needs S.
 template <typename T>
 void ForwardVelocities(const KinematicTree& tree, const T* v, TreeWorkspace<T>* ws) noexcept;
 /// Needs V; writes c, and A for v' = 0.
 template <typename T>
 void VelocityProducts(const KinematicTree& tree, TreeWorkspace<T>* ws) noexcept;
-/// A from v' [nv]. Needs S and c.
+/// Accelerations A of all nodes from v' [nv]. Needs S and c.
 template <typename T>
 void ForwardAccelerations(const KinematicTree& tree, const T* vdot, TreeWorkspace<T>* ws) noexcept;
 
@@ -25,7 +25,7 @@ void ForwardAccelerations(const KinematicTree& tree, const T* vdot, TreeWorkspac
 /// are brought back to unit length.
 template <typename T>
 void MoveCoordinates(const KinematicTree& tree, const T* dv, T* q);
-/// The same of vectors dv [nv] and q [nq].
+/// The same for vectors dv [nv] and q [nq].
 void MoveCoordinates(const KinematicTree& tree, const VectorXd& dv, VectorXd* q);
 
 /// The rotation of a unit quaternion (w, x, y, z).
@@ -40,14 +40,14 @@ Posed PoseInWorld(const TreeWorkspace<double>& ws, int node, const Posed& X_BQ);
 /// twists about Qo, [v; w], world axes. Needs X and S.
 void GraspJacobian(const KinematicTree& tree, const TreeWorkspace<double>& ws, int node,
                    const Posed& X_BQ, Matrix6Xd* J);
-/// The same in registers.
+/// The same with the frame Q in its node, and the columns, as kernels hold them.
 void GraspJacobian(const KinematicTree& tree, const TreeWorkspace<double>& ws, int node,
                    const Frame& Q, std::vector<Screw>* J) noexcept;
 
-/// Twist and acceleration [linear; angular] about the origin of such a frame. Need V; V and A,
-/// which for the ground is that of SetGravity.
+/// Twist V_WQ [v; w] of a frame Q that is fixed in a node, about Qo, world axes. Needs V.
 Vector6d GraspTwist(const TreeWorkspace<double>& ws, int node, const Posed& X_BQ);
-/// Acceleration [linear; angular] about the origin of such a frame; needs V and A.
+/// Acceleration [a; alpha] of such a frame, of Qo and Q, world axes. Needs V and A; where
+/// SetGravity has given the ground an acceleration, it is in this one too.
 Vector6d GraspAcceleration(const TreeWorkspace<double>& ws, int node, const Posed& X_BQ);
 
 // Small and everywhere: inline.

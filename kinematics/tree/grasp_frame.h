@@ -6,12 +6,12 @@ namespace vmech {
 
 /// Where a hand holds a mechanism.
 struct GraspFrame {
-  int node = -1;                       ///< of the tree, that carries G; -1 is the ground
-  Posed X_BG;                          ///< G in the node
+  int node = -1;                       ///< the node of the tree that carries G; -1 is the ground
+  Posed X_BG;                          ///< pose of G in the node
   GraspKind kind = GraspKind::kRigid;  ///< kPoint: the three positional rows of e1 only
 };
 
-/// A grasp of the mechanism by its index.
+/// The frame of the mechanism's grasp with this index.
 GraspFrame GraspFrameOf(const KinematicTree& tree, int grasp);
 
 }  // namespace vmech

@@ -21,7 +21,7 @@ namespace vmech {
 
 enum class NodeMotion { kFixed, kRevolute, kPrismatic, kScrew, kSpherical };
 
-/// Entries in v.
+/// The number of entries in v that a node has.
 inline int VelocitiesOf(NodeMotion motion) {
   return motion == NodeMotion::kFixed ? 0 : motion == NodeMotion::kSpherical ? 3 : 1;
 }
@@ -44,7 +44,7 @@ struct TreeNode {
   Posed X_BL;       ///< the link's drawing frame in the node
   double mass = 0;  ///< of the link [kg]; 0 between freedoms
   Vector3d p_BoBcm = Vector3d::Zero();  ///< centre of gravity, node axes [m]
-  Matrix3d I_Bcm = Matrix3d::Zero();    ///< about the centre of gravity, node axes
+  Matrix3d I_Bcm = Matrix3d::Zero();    ///< about the centre of gravity, node axes [kg m^2]
 };
 
 /// Where the two anchors of a joint are carried: F with the first link, M with the second.
@@ -124,7 +124,7 @@ struct Design {
   std::vector<JointNumbers> joints;  ///< in the mechanism's order
   Vector3<T> gravity_W;              ///< [m/s^2], world axes
 
-  /// With numbers of another type.
+  /// The same design with numbers of another type.
   template <typename S>
   Design<S> cast() const;
 };
@@ -151,13 +151,14 @@ struct TreeDesign {
   std::vector<NodeNumbers> nodes;            ///< in the tree's order
   std::vector<PlacementNumbers> placements;  ///< in the mechanism's order
 };
-/// From the numbers of the mechanism that the tree is of.
+/// The numbers of nodes and placements for a design of the tree's mechanism.
 template <typename T>
 TreeDesign<T> DesignOfTree(const KinematicTree& tree, const Design<T>& design);
-/// From the fields of the tree.
+/// The numbers that the tree itself has.
 template <typename T>
 TreeDesign<T> DesignOfTree(const KinematicTree& tree);
 
+/// The tree of a mechanism, whose loops are cut as the options say.
 /// @throws std::invalid_argument as FindSpanningTree.
 KinematicTree BuildKinematicTree(Mechanism mechanism, const SpanningTreeOptions& options = {});
 
@@ -169,9 +170,9 @@ VectorXd StartCoordinates(const KinematicTree& tree);
 
 /// One velocity of the tree as text: "pin", or "ball.ry" for a freedom of a joint with several.
 std::string NameOfVelocity(const KinematicTree& tree, int v);
-/// Index in v of the given freedom of a tree joint; -1 if the joint is cut.
+/// Index in v of the given freedom, from 0, of a joint; -1 if the joint is cut.
 int VelocityIndex(const KinematicTree& tree, int joint, int freedom);
-/// Index in q of the given freedom of a tree joint that is not spherical; -1 if the joint is cut.
+/// Index in q of the given freedom, from 0, of a joint that is not spherical; -1 if it is cut.
 int CoordinateIndex(const KinematicTree& tree, int joint, int freedom);
 
 }  // namespace vmech

@@ -16,7 +16,7 @@ struct LoopState {
   Vector3<T> p_FM;      ///< origin of M from that of F, axes of F [m]
   Vector3<T> n_F;       ///< kUniversal: y_M x x_F, the direction that is neither axis, in F
   Vector6<T> e2;        ///< paper's e2: what is left to close the loop; the first `rows` entries
-  Vector6<T> bias;      ///< C' v-part: relative acceleration in the closed directions when v' = 0
+  Vector6<T> bias;      ///< dC/dt v: relative acceleration in the closed directions when v' = 0
   ScrewT<T> wrench[6];  ///< what a unit multiplier of each equation does to the second link
 };
 
@@ -27,7 +27,7 @@ struct LoopState {
 /// is near, so that no digits are lost far from the world's origin.
 template <typename T>
 struct TreeWorkspace {
-  /// keeps a reference; takes the tree's numbers
+  /// Keeps a reference to the tree, and takes its numbers.
   explicit TreeWorkspace(const KinematicTree& tree);
   /// With other numbers than the tree's.
   TreeWorkspace(const KinematicTree& tree, const TreeDesign<T>& design);
@@ -43,7 +43,7 @@ struct TreeWorkspace {
     FrameT<T> X;     ///< pose; its z axis is that of the node's elementary joint
     ScrewT<T> V;     ///< twist
     ScrewT<T> c;     ///< velocity product: what A would be if the parent's A and v' were zero
-    ScrewT<T> A;     ///< rate of V; that of the ground is the caller's (SetGravity)
+    ScrewT<T> A;     ///< rate of V; the ground's is set by the caller (SetGravity)
     ScrewT<T> p;     ///< velocity product: what F would be if A were zero
     ScrewT<T> F;     ///< what the parent exerts on this node
   };
