@@ -19,15 +19,15 @@ struct Arrangement {
   void Validate() const;
 };
 
-/// The force that a bearing transmits from the first link to the second, in the joint's axes [N].
+/// The force that a bearing transmits from the first link to the second.
 struct BearingForce {
-  Vector3d force = Vector3d::Zero();  ///< from the first link to the second
+  Vector3d force = Vector3d::Zero();  ///< on the second link, in the joint's axes [N]
 
   double radial() const { return force.head<2>().norm(); }  ///< Fr [N]
   double axial() const { return std::abs(force.z()); }      ///< Fa [N]
 };
 
-/// The share of every bearing, and what no bearing of the arrangement can take.
+/// The force on every bearing, and the moment that no bearing of the arrangement can take.
 struct ArrangementLoads {
   std::vector<std::vector<BearingForce>> forces;  ///< [bearing][pose]
   /// Moment across the axis about the only bearing [N m] per pose; zero with two bearings.

@@ -38,7 +38,7 @@ double LifeExponent(BearingKind kind);
 /// Slope of the Weibull distribution of lives: 10/9 for balls, 9/8 for rollers. ISO 281, as
 /// used for the life of a system in the general catalogue of NTN.
 double WeibullSlope(BearingKind kind);
-/// Of several bearings together: the flatter one, which gives the shorter life.
+/// The slope for several bearings together: the flattest, which gives the shortest life.
 double WeibullSlope(std::span<const BearingKind> kinds);
 
 /// True if `a` comes before `b` in the order of size: the lesser outer diameter; of equals the

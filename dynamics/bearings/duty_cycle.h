@@ -36,7 +36,7 @@ enum class Rotation {
 
 /// How the joint turns over the cycle.
 struct RotationSummary {
-  Rotation rotation = Rotation::kStanding;  ///< standing, to and fro, or round
+  Rotation rotation = Rotation::kStanding;  ///< whether it stands, goes to and fro or turns
   double cycle_time = 0;                    ///< [s]
   double revolutions = 0;  ///< path / (2 pi) per cycle, every direction counted positive
   double mean_speed = 0;   ///< path / cycle time [rad/s]

@@ -11,14 +11,14 @@
 
 namespace vmech {
 
-/// It decides which limit of the speed holds.
+/// How bearings are lubricated, which decides which limiting speed holds.
 enum class Lubrication { kGrease, kOil };
 
 /// What is asked of each bearing of a joint, and of two of them together.
 struct BearingRequirements {
-  double shaft_min = 0;                                          ///< least bore [m], >= 0
-  double shaft_max = std::numeric_limits<double>::infinity();    ///< greatest bore [m]
-  double housing_max = std::numeric_limits<double>::infinity();  ///< greatest outer diameter [m]
+  double shaft_min = 0;                                        ///< least bore [m], >= 0
+  double shaft_max = std::numeric_limits<double>::infinity();  ///< greatest bore [m], >= shaft_min
+  double housing_max = std::numeric_limits<double>::infinity();  ///< greatest D [m], > shaft_min
   double life_hours = 10000;  ///< L_nh at the given reliability [h], >= 0
   double reliability = 90;    ///< [%], 90 .. 99.95; raising it lengthens the L10 that is needed
   double static_safety = 1;   ///< least C0 / P0 [-], > 0; 2 for quiet running, 1.5 for shocks (SKF)
@@ -26,14 +26,14 @@ struct BearingRequirements {
   /// Of two bearings together, L_nh at the same reliability [h], >= 0; without it `life_hours`.
   std::optional<double> pair_life_hours = std::nullopt;
 
-  /// At the same reliability [h].
+  /// The life asked of two bearings together, at the same reliability [h].
   double LifeOfPair() const { return pair_life_hours.value_or(life_hours); }
 
   /// @throws std::invalid_argument with name, value and range.
   void Validate() const;
 };
 
-/// What a bearing makes of a duty cycle.
+/// Loads, lives and static safety of a bearing in a duty cycle.
 struct BearingRating {
   double mean_load = 0;            ///< P_m, mean effective load over the revolutions [N]
   double peak_load = 0;            ///< greatest equivalent dynamic load P [N]
@@ -66,7 +66,7 @@ enum class Criterion {
 
 /// A requirement that a bearing does not meet.
 struct Shortfall {
-  Criterion criterion;  ///< the figure that is short
+  Criterion criterion;  ///< the requirement that is not met
   double ratio = 0;     ///< what there is / what is asked, < 1; the nearer to 1 the closer
   std::string text;     ///< "life 3 200 h of 10 000 h"
 };

@@ -7,8 +7,8 @@
 
 namespace vmech {
 
-/// The formulas of ISO 281 (rating life) and ISO 76 (static load rating). Forces in N, lives in
-/// millions of revolutions unless the name says hours. Of duals with their derivatives.
+// The formulas of ISO 281 (rating life) and ISO 76 (static load rating). Forces in N, lives in
+// millions of revolutions unless the name says hours. Those of duals give derivatives too.
 
 /// Factors of the equivalent dynamic load of a single-row deep groove ball bearing.
 struct AxialFactors {

@@ -48,7 +48,8 @@ struct CoupledGrasp {
 /// the first is meant. No allocation after construction.
 class CoupledDynamics {
  public:
-  /// Keeps a reference to the tree. `hands`: at least one. `step` [s] > 0; `q`: a closed pose.
+  /// Keeps a reference to the tree. `hands`: at least one. `step` [s] in [1e-7, 1]; `q`: a closed
+  /// pose.
   /// @throws std::invalid_argument as RefuseUnrenderedFriction, or if the step or a gain is out of
   /// range.
   CoupledDynamics(const KinematicTree& tree, std::span<const CoupledGrasp> hands, double step,
@@ -57,13 +58,13 @@ class CoupledDynamics {
   CoupledDynamics(const KinematicTree& tree, const GraspFrame& grasp, const HandCoupling& coupling,
                   double step, const VectorXd& q);
 
-  /// At rest from now on; what fades is gone.
+  /// The mechanism is at rest from now on, and wrenches that were fading are gone.
   void Stop() noexcept;
   /// Held at another frame of the same kind, or again after LetGo.
   void GraspAt(const GraspFrame& grasp, int hand = 0) noexcept;
   /// The hand holds it no more: the coupling exerts nothing until GraspAt.
   void LetGo(int hand = 0) noexcept;
-  /// The same, while what the coupling pulls fades, by `rate` [N/s] at most.
+  /// The same, but the wrench of the coupling fades, its force no faster than `rate` [N/s].
   void Loosen(double rate, int hand = 0) noexcept;
   /// The largest wrench that may pull from now on, beside that of the coupling itself.
   void Within(const WrenchLimit& room, int hand = 0) noexcept {
@@ -98,7 +99,7 @@ class CoupledDynamics {
   Posed X_WG(int hand = 0) const noexcept { return pose_.X_WG(hand); }
   /// HandError of the hand [6; m, rad].
   Vector6d e1() const noexcept;
-  /// The same.
+  /// The same of any hand, as kernels hold it.
   const Screw& stretch(int hand = 0) const noexcept { return hands_[hand].coupling.e1(); }
   /// With Jacobians and inertias there.
   const GraspedMechanism& pose() const noexcept { return pose_; }
@@ -106,7 +107,7 @@ class CoupledDynamics {
   /// Hand on mechanism during the step, at Go, world axes: what the coupling pulls, and what of it
   /// fades.
   Vector6d w(int hand = 0) const noexcept;
-  const Screw& pull(int hand = 0) const noexcept { return w_[hand]; }  ///< the same
+  const Screw& pull(int hand = 0) const noexcept { return w_[hand]; }  ///< w, as kernels hold it
   /// Every joint's wrench during the step, as HandDynamics::joints.
   const std::vector<Wrenchd>& joints() const noexcept { return joints_; }
   /// Kinetic energy, weight, springs of joints and couplings [J].

@@ -12,7 +12,7 @@ namespace vmech {
 class FadingWrench {
  public:
   FadingWrench() = default;
-  /// Of springs of a stiffness K, zero rows included, in steps of T [s].
+  /// For springs of stiffness K [N/m, N m/rad], zero rows included; `rate` [N/s], steps of T [s].
   FadingWrench(const Screw& stiffness, double rate, double step);
 
   void Add(const Screw& w) noexcept;  ///< one more that fades

@@ -62,10 +62,10 @@ class GraspedMechanism {
 
   /// Takes v [nv].
   void SetVelocities(const VectorXd& v) noexcept;
-  double KineticEnergy() const noexcept;  ///< at these [J]
+  double KineticEnergy() const noexcept;  ///< at the velocities that were set last [J]
   /// M v [nv]; forgets the velocities.
   void ComputeMomenta(const VectorXd& v, VectorXd* momenta) noexcept;
-  /// Takes v' = 0, and finds what comes of v alone, as all that follows needs it.
+  /// Takes v' = 0, and finds the accelerations that come of v alone; all that follows needs them.
   void ComputeVelocityProducts() noexcept;
   /// The same, and d = s C' v, scaled and padded like C.
   void ComputeLoopBias(double s, VectorXd* d) noexcept;
@@ -92,7 +92,8 @@ class GraspedMechanism {
   void ComputeCutRows(int loop, MatrixXd* B) const noexcept;
   Screw CutTwist(int loop, const VectorXd& v) const noexcept;  ///< B v
 
-  /// Zero with all centres of gravity at the height of the reference point [J].
+  /// Energy of the weights [J], zero with all centres of gravity at the height of the reference
+  /// point.
   double WeightEnergy() const noexcept { return vmech::WeightEnergy(gravity_W_, inertias_); }
 
  private:

@@ -44,8 +44,9 @@ class HandDynamics {
   /// count. `q`: a closed pose, at which is judged whether the grasp moves every freedom.
   /// Freedoms that it does not move and that shift no centre of gravity, such as the spin of a rod
   /// between two spherical joints, stand still.
-  /// @throws std::invalid_argument if it leaves others loose, naming one; or if a cut joint has
-  ///         springs or friction, or a joint has friction under load: they are beyond this path.
+  /// @throws std::invalid_argument if it leaves others loose, naming one; if no stiffness is above
+  ///         zero; if a cut joint has springs or friction, or a joint has friction under load: they
+  ///         are beyond this path.
   HandDynamics(const KinematicTree& tree, const GraspFrame& grasp, const Vector6d& stiffness,
                const VectorXd& q, WrenchRule rule = WrenchRule::kWorkless);
 
@@ -82,7 +83,7 @@ class HandDynamics {
   /// first anchor; per joint of the mechanism.
   const std::vector<Wrenchd>& joints() const noexcept { return joints_; }
   /// Kinetic energy of the share of inertia, weight (zero with all centres of gravity at the height
-  /// of Wo), springs [J].
+  /// of KinematicTree::reference), springs [J].
   double Energy() const noexcept;
 
  private:

@@ -13,10 +13,10 @@ namespace vmech {
 /// springs, friction and limits, and where the hands hold it. All designs of a mechanism have the
 /// same topology and so the same sizes.
 struct HeldDesign {
-  /// Of the freedom of a node.
+  /// The numbers of a node's freedom.
   struct FreedomNumbers {
     Passive passive;              ///< spring and friction
-    double lower = 0, upper = 0;  ///< limits; none are infinite
+    double lower = 0, upper = 0;  ///< limits [m] or [rad]; infinite where there is none
   };
   VectorXd values;  ///< of the parameters that the design was made for; blended with the rest
   TreeDesign<double> tree;                ///< of nodes and anchors

@@ -59,7 +59,8 @@ inline constexpr double kSlowSliding = 1e-2;
 /// only: joints with springs or friction are kept whole, those with limits where that can be.
 SpanningTreeOptions KeepPassiveJoints(const Mechanism& mechanism);
 
-/// What PassiveJoints refuses. @throws std::invalid_argument
+/// Refuses what PassiveJoints cannot render.
+/// @throws std::invalid_argument as the constructor of PassiveJoints.
 void RefuseUnrenderedFriction(const KinematicTree& tree);
 
 }  // namespace vmech

@@ -11,10 +11,10 @@ namespace vmech {
 /// force and moment the spring slips along, in its direction: the mechanism never gets more than
 /// the device can give the hand.
 struct HandCoupling {
-  Vector6d stiffness = Vector6d::Zero();                        ///< K [N/m], [N m/rad], >= 0
-  Vector6d damping = Vector6d::Zero();                          ///< B [N s/m], [N m s/rad], >= 0
-  double max_force = std::numeric_limits<double>::infinity();   ///< [N], > 0
-  double max_moment = std::numeric_limits<double>::infinity();  ///< [N m], > 0
+  Vector6d stiffness = Vector6d::Zero();  ///< K [N/m], [N m/rad], each in [0, 1e9]
+  Vector6d damping = Vector6d::Zero();    ///< B [N s/m], [N m s/rad], each in [0, 1e7]
+  double max_force = std::numeric_limits<double>::infinity();   ///< largest force [N], >= 1e-9
+  double max_moment = std::numeric_limits<double>::infinity();  ///< largest moment [N m], >= 1e-9
 };
 
 /// A HandCoupling at work, taken at the end of steps of T:
@@ -28,7 +28,7 @@ class VirtualCoupling {
   /// of range.
   VirtualCoupling(const HandCoupling& coupling, GraspKind kind, double step);
 
-  /// The hand and the grasp frame, in the world.
+  /// Takes where the grasp frame and the hand are, in the world: e1 is then what is between them.
   void Stretch(const Frame& X_WG, const MovingFrame& hand) noexcept;
 
   /// What the device can exert at this moment, beside the largest force and moment of the coupling
@@ -45,11 +45,11 @@ class VirtualCoupling {
   bool Pull(const Screw& V_WG) noexcept;
   void LetGo() noexcept;  ///< nothing pulls until the next Pull
 
-  /// [p; r] from the grasp frame to the hand [m, rad]
+  /// [p; r] from the grasp frame to the hand, world axes [m, rad].
   const Screw& e1() const noexcept { return e1_; }
-  /// Of the hand on the mechanism at Go, world axes [N, N m].
+  /// The wrench of the hand on the mechanism about Go, world axes [N, N m].
   const Screw& w() const noexcept { return w_; }
-  /// At its largest wrench, the spring does not grow.
+  /// True while the wrench is the largest that is allowed: the spring then stretches no further.
   bool slipping() const noexcept { return slipping_; }
   double energy() const noexcept { return energy_; }  ///< of the spring [J]
   /// The most that the damper can give the mechanism in a step at its twist [J].

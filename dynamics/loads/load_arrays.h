@@ -20,17 +20,18 @@ struct LinkMotion {
   Vector3d alpha = Vector3d::Zero();  ///< angular acceleration [rad/s^2]
 };
 
-/// A motor, and the force that it exerts [N] or [N m].
+/// The motion that a motor prescribes, and the force that it takes.
 struct DriveSample : MotionSample {
   double force = 0;  ///< along the freedom that it drives [N] or [N m]
 };
 
-/// A joint, and the wrench which its first link exerts on the second, at the second anchor's
-/// origin, in the axes of the first anchor.
+/// The motion of a joint, and the wrench which its first link exerts on the second, about the
+/// second anchor's origin, in the axes of the first anchor.
 struct JointSample : Wrenchd {
-  Vector3d position = Vector3d::Zero();  ///< coordinates of its freedoms, unwrapped
-  /// Of these; of a spherical joint the angular velocity of the second anchor in the first, in axes
-  /// of the second.
+  /// Coordinates of its freedoms, unwrapped [m] or [rad]; of a spherical joint the rotation vector.
+  Vector3d position = Vector3d::Zero();
+  /// Rates of these [m/s] or [rad/s]; of a spherical joint the angular velocity of the second
+  /// anchor in the first, in axes of the second.
   Vector3d rate = Vector3d::Zero();
   Vector3d acceleration = Vector3d::Zero();  ///< d/dt of `rate`, from the loop equations
 };
@@ -43,7 +44,7 @@ struct HandLoad {
 
 /// What friction and idle freedoms make of a pose.
 struct PoseState {
-  double unresisted = 0;  ///< largest force along an idle freedom without inertia [N], [N m]
+  double unresisted = 0;  ///< largest force along an idle freedom without inertia [N] or [N m]
   /// Load-dependent friction has no equilibrium here: the mechanism locks itself. The joint
   /// wrenches are those of the last iteration.
   bool jammed = false;
@@ -89,11 +90,11 @@ struct LoadArrays {
   /// The numbers of the arrays are undefined, everything else has its defaults.
   explicit LoadArrays(const Shape& shape);
 
-  size_t pose_count() const { return times.size(); }  ///< as many as `times`
+  size_t pose_count() const { return times.size(); }  ///< poses
   size_t drive_count = 0;                             ///< joint drives; a hand is none
-  /// Those that are cut are counted too.
+  /// Joints of the mechanism, those that are cut included.
   size_t joint_count() const { return first_freedom.size() - 1; }
-  /// Of all joints together.
+  /// Freedoms of all joints together.
   size_t freedom_count() const { return static_cast<size_t>(first_freedom.back()); }
   size_t link_count = 0;  ///< 0 if their motion was not wanted
 
@@ -104,7 +105,7 @@ struct LoadArrays {
     const double* w = &wrenches[6 * (pose * joint_count() + joint)];
     return {{w[0], w[1], w[2]}, {w[3], w[4], w[5]}};
   }
-  /// What that drive prescribes, and the force that it takes.
+  /// The motion that a drive prescribes at a pose, and the force that it takes.
   DriveSample Drive(size_t pose, size_t drive) const {
     const size_t at = pose * drive_count + drive;
     return {drives[at], drive_forces[at]};
@@ -116,15 +117,15 @@ struct LoadArrays {
   Array drive_forces;                     ///< [poses, drives] [N], [N m]
   Array wrenches;                         ///< [poses, joints, fx fy fz mx my mz], as JointSample
   Array positions, rates, accelerations;  ///< [poses, freedoms], as JointSample
-  Array powers;                           ///< [poses] of the drives and the hand [W]
+  Array powers;                           ///< [poses] power of the drives and the hand together [W]
   /// [poses] power in, less d/dt energy and losses, over the largest sum of the terms at any pose
   /// of the study.
   Array power_errors;
   Array power_error_scales;  ///< [poses] the sum of those terms [W]
-  /// [poses] sin^2 of the angle by which the drive's hold on the mechanism is short of none; 0 at a
-  /// dead centre.
+  /// [poses] how far the drive is from losing its hold on the mechanism: sin^2 of an angle that is
+  /// 0 at a dead centre (DependentSolver::smallest_pivot).
   Array smallest_pivots;
-  Array closures;  ///< [poses] loop error that is left, dimensionless
+  Array closures;  ///< [poses] loop error that is left, dimensionless as LargestLoopError
   std::vector<LinkMotion>
       links;                    ///< [poses, links], empty if LoadStudyOptions::link_motions is off
   std::vector<HandLoad> hands;  ///< [poses], empty unless a hand drives
@@ -168,7 +169,7 @@ class JointLoads {
   JointLoads() = default;
   /// The arrays must outlive it.
   JointLoads(const LoadArrays* arrays, size_t pose) : arrays_(arrays), pose_(pose) {}
-  /// Joints of the mechanism; 0 of none.
+  /// Joints of the mechanism; 0 of JointLoads(), which looks at no pose.
   size_t size() const { return arrays_ == nullptr ? 0 : arrays_->joint_count(); }
   /// In the mechanism's order.
   JointSample operator[](size_t joint) const { return arrays_->Joint(pose_, joint); }

@@ -21,7 +21,7 @@ struct LoadStudyResult {
   std::vector<std::string> idle;           ///< freedoms that move nothing the loads depend on
   double norm_length = 0;      ///< used by minimum_norm, and for stiffness where none is given [m]
   double max_closure = 0;      ///< largest PoseLoads::closure of all poses [-]
-  double max_power_error = 0;  ///< largest PoseLoads::power_error of all poses
+  double max_power_error = 0;  ///< largest PoseLoads::power_error of all poses [-]
   std::vector<std::string> warnings;  ///< sentences for the user
   std::vector<std::string> notes;     ///< what the assembly did, as AssembledMechanism::Notes
   /// Per joint and component: not determined by statics, and loaded by this study. What is zero at

@@ -12,7 +12,8 @@
 
 namespace vmech {
 
-/// A motor at a joint: one freedom of the joint moves as prescribed, whatever force that takes.
+/// A motor at a joint: one freedom of the joint, which is not spherical, moves as prescribed,
+/// whatever force that takes.
 struct JointDrive {
   int joint = -1;                            ///< index in Mechanism::joints
   int freedom = 0;                           ///< counted from 0
@@ -28,7 +29,7 @@ struct HandDrive {
   Vector6d stiffness = Vector6d::Zero();
 };
 
-/// The numbers of a wrench from outside.
+/// The numbers of a wrench that acts on a link from outside.
 template <typename T>
 struct LoadTableOf {
   Vector3<T> p_L = Vector3<T>::Zero();  ///< point of application in the link's drawing frame [m]
@@ -40,16 +41,16 @@ struct LoadTableOf {
   T period = 0;
 };
 
-/// A wrench from outside on a link.
+/// A wrench that acts on a link from outside.
 struct ExternalLoad : LoadTableOf<double> {
-  /// Of the wrench's components.
+  /// The axes in which the wrench's components are given.
   enum class Axes { kWorld, kLink };
-  /// What `at` counts.
+  /// The argument of the table, which `at` has the values of.
   enum class Over { kConstant, kTime, kDriveCoordinate };
 
   int link = -1;                ///< index in Mechanism::links
   Axes axes = Axes::kWorld;     ///< the link's are those of its drawing
-  Over over = Over::kConstant;  ///< [s], [m] or [rad] of the first drive
+  Over over = Over::kConstant;  ///< time [s], or the first drive's coordinate [m] or [rad]
 };
 
 /// What is to be computed: a mechanism, its motion, and what acts on it.
@@ -63,7 +64,7 @@ struct LoadStudy {
   std::vector<ExternalLoad> external;            ///< act at every pose, beside weight
   ReactionRule rule = ReactionRule::kStiffness;  ///< how what statics leaves open is shared out
   bool stop_at_limits = false;  ///< refuse a motion that leaves the limits of a joint
-  /// Of messages: those of the study's figures.
+  /// The units in which messages about the study speak.
   DisplayUnits units;
   /// The length by which `minimum_norm` weighs moments against forces [m]; 0 takes the mechanism's
   /// characteristic length.
@@ -73,8 +74,8 @@ struct LoadStudy {
 /// How a load study is run; the mechanism and its motion are in LoadStudy.
 struct LoadStudyOptions {
   int threads = 1;                   ///< 1..64; the result does not depend on it
-  double closure_tolerance = 1e-13;  ///< largest loop error that counts as closed, of the
-                                     ///< characteristic length and of 1 rad
+  double closure_tolerance = 1e-13;  ///< largest loop error, of the characteristic length and of
+                                     ///< 1 rad, that counts as closed, (0, 1e-6]
   bool link_motions = true;          ///< whether PoseLoads::links is wanted
   /// Called now and then with the number of poses done; false stops the study.
   std::function<bool(size_t done)> progress;

@@ -10,7 +10,7 @@
 
 namespace vmech {
 
-/// Does statics leave any component of a joint's wrench open?
+/// True if statics leaves any component of any joint's wrench open.
 bool AnyNotDetermined(const LoadStudyResult& result);
 
 /// LoadStudyResult::open: of the components that statics does not determine, those that are not

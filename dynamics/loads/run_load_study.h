@@ -6,6 +6,7 @@
 
 namespace vmech {
 
+/// Computes the loads of every joint at every pose of a study.
 /// @throws std::invalid_argument for a study that contradicts itself, std::runtime_error with the
 ///         pose and its time where the motion cannot be followed (a dead centre, out of reach),
 ///         where it leaves limits at which it is to stop, or where a load acts on a freedom that

@@ -4,7 +4,7 @@
 
 namespace vmech {
 
-/// Does the study say what it needs to, without contradiction? Its mechanism is looked at by
+/// Checks that a study says what it needs to, without contradiction; its mechanism is checked by
 /// RequireValid of a mechanism.
 /// @throws std::invalid_argument naming the field, its value and what it must be.
 void RequireValid(const LoadStudy& study);

@@ -43,13 +43,14 @@ std::vector<JointCertainty> JudgeCertainty(const KinematicTree& tree,
                                            const CoordinatePartition& partition, const VectorXd& q,
                                            double rounding = 0);
 
-/// Of a unit load; less is that of rounded axes, times what a mechanism may make of it.
+/// The part of a unit load below which a component counts as touched by the rounding of axes alone:
+/// the rounding, times what a mechanism may make of it.
 inline double TouchOfRounding(double rounding) {
   return 30 * rounding;
 }
 
-/// Of the largest singular value of C_u; a pose this near to a dead centre multiplies loads by its
-/// inverse.
+/// Singular values of C_u below this part of the largest mark a singular pose; a pose this near to
+/// a dead centre multiplies loads by the inverse.
 inline constexpr double kSingularTolerance = 1e-6;
 
 /// Least singular value of the dimensionless C_u over its largest at a closed pose; 1 without

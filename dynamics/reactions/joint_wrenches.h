@@ -18,16 +18,17 @@ struct JointState {
 template <typename T>
 void JointFrames(const KinematicTree& tree, const TreeWorkspace<T>& ws,
                  std::vector<JointState<T>>* joints) noexcept;
-/// Wrenches of the tree joints from F of the nodes; those of cut joints are left alone.
+/// Writes W of the joints in the tree from F of the nodes; that of cut joints is left alone.
 template <typename T>
 void TreeJointWrenches(const KinematicTree& tree, const TreeWorkspace<T>& ws,
                        std::vector<JointState<T>>* joints) noexcept;
 
-/// A wrench from outside on a node: what is less to be exerted on it and all that carry it.
+/// Applies a wrench from outside to a node: its parent, and all that carry it, have so much less to
+/// exert.
 template <typename T>
 void ApplyAlongBranch(const KinematicTree& tree, int node, const ScrewT<T>& W,
                       TreeWorkspace<T>* ws) noexcept;
-/// What the first link of a cut joint exerts on the second, all around the loop.
+/// Applies what the first link of a cut joint exerts on the second to all nodes around the loop.
 template <typename T>
 void ApplyAroundLoop(const Loop& loop, const ScrewT<T>& W, TreeWorkspace<T>* ws) noexcept;
 /// The same of the multipliers mu [rows] of all cut joints, and their share of the joints'

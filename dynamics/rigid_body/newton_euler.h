@@ -7,15 +7,15 @@
 
 namespace vmech {
 
-/// Dynamics of a tree whose joints are left open, in screws about the reference point. What a pass
-/// finds stays for the next: inertias hold as long as the pose.
+// Dynamics of a tree whose cut joints are left open, in screws about the reference point. What a
+// pass finds stays for the next: inertias hold as long as the pose.
 
 /// Inertia of every node, node i at i + 1.
 template <typename T>
 struct TreeInertias {
   /// Sizes everything, and takes the tree's numbers.
   explicit TreeInertias(const KinematicTree& tree);
-  /// With other numbers than the tree's.
+  /// The same with other numbers than the tree's.
   TreeInertias(const KinematicTree& tree, const TreeDesign<T>& design);
 
   /// Takes other numbers of the same tree.
@@ -77,7 +77,7 @@ void GyroscopicWrenches(const KinematicTree& tree, const TreeInertias<T>& inerti
 template <typename T>
 void NewtonEuler(const KinematicTree& tree, const TreeInertias<T>& inertias,
                  const ScrewT<T>* applied, TreeWorkspace<T>* ws, T* tau) noexcept;
-/// S . F [nv] of the F that are there.
+/// The generalised forces S . F [nv] of the wrenches F that ws holds.
 template <typename T>
 void GeneralisedForces(const KinematicTree& tree, const TreeWorkspace<T>& ws, T* tau) noexcept;
 /// The joints' momenta M v [nv] at velocities v [nv]: the forces that bring them there from rest in
@@ -86,7 +86,7 @@ template <typename T>
 void Momenta(const KinematicTree& tree, const TreeInertias<T>& inertias, const T* v,
              TreeWorkspace<T>* ws, T* momenta) noexcept;
 
-/// Kinetic energy at V [J].
+/// Kinetic energy at the twists V in ws [J]. Needs BodyInertias.
 double KineticEnergy(const KinematicTree& tree, const TreeInertias<double>& inertias,
                      const TreeWorkspace<double>& ws) noexcept;
 /// - sum m g . p_cm [J], zero where every centre of gravity is at the height of the reference

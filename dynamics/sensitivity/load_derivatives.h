@@ -16,14 +16,14 @@ struct LoadDerivatives {
   std::vector<Dual> rates;          ///< [poses, freedoms]
   std::vector<Dual> ground_forces;  ///< [poses, 3] of the ground on the mechanism, world axes [N]
   std::vector<Dual> grasps;         ///< [poses, grasps, 3] their origins in the world [m]
-  /// [poses, joints, 6] where each joint is, and its z axis: of its first anchor, in the world [m]
+  /// [poses, joints, 6] origin [m] and z axis of each joint's first anchor, in the world.
   std::vector<Dual> axes;
   std::vector<int> first_freedom;  ///< [joints + 1]
 
   std::vector<size_t> pose_numbers;  ///< StudyChange::pose_numbers
 
   size_t poses() const { return times.size(); }  ///< that were differentiated
-  /// Of a pose in the whole motion.
+  /// The number that a pose has in the whole motion.
   size_t pose_number(size_t pose) const { return pose_numbers.empty() ? pose : pose_numbers[pose]; }
   size_t joints() const { return first_freedom.size() - 1; }  ///< of the mechanism
 };

@@ -16,7 +16,7 @@ struct InitialValueProblem {
   std::function<bool(double t, const double* y, const double* slopes, double* out)> evaluate;
   double relative_tolerance = 1e-9;         ///< of each y, on a step
   std::vector<double> absolute_tolerances;  ///< [size]
-  double max_step = 0;                      ///< [s]; 0: none
+  double max_step = 0;                      ///< longest step [s]; 0: no bound
   // Of F.
   std::vector<bool> differential;  ///< [size] the others have no slopes, and count in no error test
   double first_step = 0;           ///< [s]

@@ -29,7 +29,7 @@ struct Modes {
   VectorXd q;                                ///< [nq]
   std::vector<Mode> modes;                   ///< by |eigenvalue|, slowest first
   Stability stability = Stability::kStable;  ///< by the eigenvalues
-  double residual = 0;                ///< largest force along a free motion: 0 at an equilibrium
+  double residual = 0;  ///< largest force along a free motion [N], [N m]; 0 at an equilibrium
   MatrixXd mass, damping, stiffness;  ///< [freedoms, freedoms] N'M N, D, K
   MatrixXd free_motions;              ///< N [nv, freedoms]
   std::vector<std::string> freedoms;  ///< the velocity that each column of N moves at unit rate

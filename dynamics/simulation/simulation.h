@@ -69,7 +69,7 @@ struct LimitRebound {
 /// A coordinate of a joint that is looked out for.
 struct CoordinateWatch {
   FreedomId at;           ///< whose coordinate
-  double value = 0;       ///< [m] or [rad]; as the coordinate counts whole turns
+  double value = 0;       ///< [m] or [rad]; an angle counts whole turns, as the coordinate does
   bool ends_run = false;  ///< the simulation ends there
 };
 
@@ -104,11 +104,12 @@ struct Simulation {
   /// loops do not allow is projected (SimulationResult::moved_rates).
   std::vector<StartRate> start_rates;
 
-  std::vector<double> times;  ///< at which results are wanted, increasing, the first one the start
+  std::vector<double>
+      times;  ///< of the results [s], increasing, two at least; the first: the start
   std::vector<CoordinateWatch> watches;  ///< looked out for all the time
 
-  ReactionRule rule = ReactionRule::kStiffness;  ///< for the joints' wrenches, as in a LoadStudy
-  double norm_length = 0;                        ///< as there [m]
+  ReactionRule rule = ReactionRule::kStiffness;  ///< as LoadStudy::rule; not kPaperJoint
+  double norm_length = 0;                        ///< as LoadStudy::norm_length [m]
   DisplayUnits units;                            ///< of messages
 };
 
@@ -151,8 +152,8 @@ struct SimulationOptions {
   /// Loop error, dimensionless, beyond which the run is brought back on its loops, [1e-13, 1e-3];
   /// 0: ten times what the tolerances above leave of the coordinates. Results are closed to 1e-12.
   double drift_tolerance = 0;
-  double max_step = 0;          ///< [s]; 0: none
-  long max_steps = 10'000'000;  ///< of the integrator, > 0
+  double max_step = 0;          ///< longest step [s], in [0, 1e12]; 0: no bound
+  long max_steps = 10'000'000;  ///< most steps of the integrator, in [1, 1e15]
   bool loads = true;            ///< whether the joints' wrenches are wanted
   bool link_motions = true;     ///< whether PoseLoads::links is wanted
   /// Called now and then with the time that has been reached [s]; false stops the run, which keeps

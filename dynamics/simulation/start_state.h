@@ -9,7 +9,7 @@ namespace vmech {
 
 /// Where a simulation begins: on its loops, with rates that they allow.
 struct StartState {
-  VectorXd q, v;                       ///< [nq], [nv]
+  VectorXd q, v;                       ///< coordinates [nq] and velocities [nv]
   std::vector<MovedRate> moved_rates;  ///< those that the loops did not allow
 };
 

@@ -45,9 +45,8 @@ struct InverseKinematicsOptions {
 class InverseKinematics final : public ConstrainedLeastSquares {
  public:
   /// Keeps a reference to the tree.
-  /// @throws std::invalid_argument as InverseKinematicsOptions::Validate, or if the stiffness
-  /// leaves
-  ///         no row.
+  /// @throws std::invalid_argument as InverseKinematicsOptions::Validate, or if no row is left by
+  ///         the stiffness.
   InverseKinematics(const KinematicTree& tree, const GraspFrame& grasp,
                     const InverseKinematicsOptions& options = {});
 

@@ -17,8 +17,8 @@ struct Extreme {
 /// How far and how fast a freedom of a joint moves.
 struct FreedomRange {
   Extreme least, greatest;          ///< of the coordinate, and when
-  double largest_rate = 0;          ///< magnitude, of all poses [m/s] or [rad/s]
-  double largest_acceleration = 0;  ///< [m/s^2] or [rad/s^2]
+  double largest_rate = 0;          ///< magnitude, over all poses [m/s] or [rad/s]
+  double largest_acceleration = 0;  ///< magnitude, over all poses [m/s^2] or [rad/s^2]
 
   double stroke() const { return greatest.value - least.value; }  ///< between them [m] or [rad]
 };

@@ -26,10 +26,10 @@ namespace vmech {
 struct TransmissionAngle {
   std::array<int, 4> joints{};                ///< ground - input - coupler - output - ground
   int input = -1, coupler = -1, output = -1;  ///< links
-  bool slides = false;                        ///< the output, on the ground
-  bool coupler_slides = false;                ///< on the input or on the output
+  bool slides = false;                        ///< the output slides on the ground
+  bool coupler_slides = false;                ///< the coupler slides on the input or on the output
   std::vector<double> angles;                 ///< [poses] in [0, pi/2]; not finite where v is zero
-  size_t least_pose = 0;                      ///< of the smallest
+  size_t least_pose = 0;                      ///< the pose with the smallest angle
 };
 
 /// None where the mechanism is not one loop of four links, the ground among them, of revolutes with

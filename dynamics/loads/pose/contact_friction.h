@@ -8,8 +8,7 @@
 namespace vmech {
 
 /// Dry friction of a joint: what its sliding contacts can exert, and in which direction. The law of
-/// every joint type is here and nowhere else. T: double, Lanes4 for four poses, or
-/// duals.
+/// every joint type is here and nowhere else. T: double, Lanes4 for four poses, or duals.
 ///
 /// Each freedom i has a limit f_i = coulomb_i + mu N_i L_i [N] or [N m], with N the load of the
 /// contact [N], mu the coefficient and L its lever (1 for a shift, a radius for a turn):
@@ -59,7 +58,7 @@ SlidingContacts ContactsOf(JointType type);
 template <typename T>
 Vector3<T> FrictionLimits(JointType type, const typename Design<T>::JointNumbers& numbers,
                           const Wrench<T>& W_F, const Vector3<T>& position, const Vector3<T>& rate);
-/// The same of a joint as a file has it.
+/// The same for a joint of a mechanism, whose numbers are doubles.
 Vector3d FrictionLimits(const Joint& joint, const Wrenchd& W_F, const Vector3d& position,
                         const Vector3d& rate);
 

@@ -10,10 +10,10 @@ namespace vmech {
 /// What a joint does and carries, in the axes of the anchor on its first link.
 template <typename T>
 struct JointLoad {
-  Wrench<T> W_F;            ///< what the first link exerts on the second, about the second anchor
-  Vector3<T> position;      ///< coordinates of its freedoms
+  Wrench<T> W_F;            ///< of the first link on the second, about the second anchor's origin
+  Vector3<T> position;      ///< coordinates of its freedoms [m, rad]
   Vector3<T> rate;          ///< of the coordinates [m/s, rad/s]
-  Vector3<T> acceleration;  ///< of the coordinates, the slopes of `rate`
+  Vector3<T> acceleration;  ///< slopes of `rate` [m/s^2, rad/s^2]
 };
 
 /// Coordinates of the joints in the tree from q [nq]; of a spherical joint the rotation vector.

@@ -8,8 +8,9 @@ namespace vmech {
 /// The same motion as a differential-algebraic problem F(t, y, y') = 0 in which nothing is solved
 /// for, the stabilised form of index two [Gear, Gupta and Leimkuhler 1985]:
 ///
-///   q' = v (+) G'm,   M v' + h = forces - G'l,   G v = rates of drives,   g(q) = positions of
-///   drives y  = [q; v; supplied; dissipated; l; m]
+///   q' = v (+) G'm,   M v' + h = forces - G'l,
+///   G v = rates of drives,   g(q) = positions of drives,
+///   y = [q; v; supplied; dissipated; l; m]
 ///
 /// G are the loops' C in an orthonormal basis of what its dimensionless columns span at one pose,
 /// since redundant rows would leave F singular, and the rows of the drives. Without contacts.
@@ -18,7 +19,7 @@ class IndexTwo {
   /// Keeps references. @throws std::invalid_argument if there is dry friction or a limit.
   IndexTwo(const PreparedSimulation& prepared, EquationsOfMotion* equations);
 
-  /// EquationsOfMotion's, and two multipliers to a constraint
+  /// Numbers in y: those of EquationsOfMotion, and two multipliers for each constraint.
   int size() const { return equations_.size() + 2 * constraints(); }
   /// y is that of EquationsOfMotion with room for the rest; chooses the basis there.
   void Start(double time, VectorXd* y, VectorXd* slopes);
