@@ -25,7 +25,7 @@ struct EstimatorOptions {
   EstimatorKind kind = EstimatorKind::kObserver;  ///< the filter
   double jerk_density = 1e2;                      ///< kKalman, lengths [m^2/s^5], in [1e-6, 1e12]
   double angular_jerk_density = 1e4;              ///< kKalman, angles [rad^2/s^5], in [1e-6, 1e12]
-  int window = 20;  ///< kQuadraticFit and kAdaptiveWindow [samples], 3..64
+  int window = 20;  ///< kQuadraticFit [samples], 3..64, and kAdaptiveWindow, 2..64
 };
 
 /// Velocities and accelerations of coordinates from their steps at a fixed period: an estimator for
@@ -42,8 +42,8 @@ class CoordinateEstimator {
                       const std::vector<Coordinate>& coordinates);
 
   void Reset() noexcept;  ///< the next sample is the first
-  /// The displacement [size] in the last `periods` periods, 1 or more, taken to be even; zero for
-  /// the first sample.
+  /// Takes the displacement [size] in the last `periods` periods, 1 or more, over which it is
+  /// spread evenly; zero for the first sample.
   void Update(const VectorXd& step, int periods) noexcept;
 
   const VectorXd& v() const noexcept { return v_; }  ///< [size] velocities [m/s, rad/s]

@@ -34,7 +34,7 @@ struct HandObserverOptions {
 /// s. No allocation after construction.
 class HandObserver {
  public:
-  /// Does the device know enough of itself?
+  /// True if the device states its arm, senses the arm's joints and takes forces or torques.
   static bool Suits(const DeviceInfo& info);
 
   /// @throws std::invalid_argument as Validate, or if the device does not suit.

@@ -64,7 +64,7 @@ class HandLoop {
   ForceOff latched() const noexcept {
     return safety_.latched();
   }  ///< why no force is sent any more
-  /// Nothing is heard of it any more: the hand has let go for good.
+  /// Nothing is heard of the device any more: the hand has let go for good.
   bool lost() const noexcept { return latched() == ForceOff::kLinkLost; }
   Master& master() const noexcept { return *master_; }  ///< as given
   HandSummary Summary() const;                          ///< of the run so far

@@ -21,7 +21,7 @@ namespace vmech {
 
 /// How long a loop runs, and what is kept of it.
 struct RunnerOptions {
-  double seconds = 0;   ///< how long to run; 0: until Stop, in [0, 1e6]
+  double seconds = 0;   ///< how long to run [s], in [0, 1e6]; 0: until Stop
   bool record = false;  ///< keep every tick; needs `seconds`
   int keep = 2000;      ///< last ticks that are kept in any case, in [1, 1e6]
   /// Where the last ticks are written after a fault; empty: nowhere.
@@ -76,7 +76,7 @@ struct RunnerHand {
 struct LiveStatus {
   std::atomic<std::uint64_t> ticks = 0, skipped = 0;  ///< as in RunSummary
   std::atomic<double> force = 0;                      ///< sent [N]
-  std::atomic<double> energy = 0;                     ///< [J]
+  std::atomic<double> energy = 0;                     ///< the passivity observer's [J]
   std::atomic<std::int64_t> compute_ns = 0;           ///< of the last tick [ns]
   std::atomic<ForceOff> off = ForceOff::kNotActive;   ///< why no force is sent
 };
@@ -100,9 +100,9 @@ class Runner {
   /// @throws what Master::Activate and WriteRecording throw.
   RunSummary Run();
 
-  /// From any thread or a signal handler.
+  /// Ends the run after the present tick; from any thread or a signal handler.
   void Stop() noexcept { stop_ = true; }
-  /// The same, and counts as a fault.
+  /// The same as an emergency stop: no force from the next tick on, and a fault.
   void EmergencyStop() noexcept { emergency_stop_ = true; }
 
   const LiveStatus& live() const noexcept { return live_; }  ///< may be read from any thread

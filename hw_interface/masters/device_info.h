@@ -21,13 +21,13 @@ enum Sense : std::uint32_t {
   kSensesEcho = 1u << 6,           ///< command_echo
 };
 
-/// The mechanics of a handle along its weakest direction, for translations in N, m, kg and for
-/// rotations in N m, rad, kg m^2. Zero means unknown or none.
+/// The mechanics of a handle along its worst direction for each figure: for translations in N, m,
+/// kg and for rotations in N m, rad, kg m^2. Zero means unknown or none.
 struct HandlePhysics {
   double mass = 0;        ///< apparent at the handle, the least [kg] or [kg m^2]
   double damping = 0;     ///< physical viscous damping b, the least [N s/m] or [N m s/rad]
   double coulomb = 0;     ///< physical dry friction f_c, the least [N] or [N m]
-  double resolution = 0;  ///< smallest step of the measured pose, the largest [m] or [rad]
+  double resolution = 0;  ///< step of the measured pose, the coarsest [m] or [rad]
   double peak = 0;        ///< largest force or moment that it can exert in any direction [N], [N m]
   double max_speed = std::numeric_limits<double>::infinity();  ///< trips above [m/s] or [rad/s]
 };

@@ -48,9 +48,9 @@ struct MasterState {
   Posed X_DH;                        ///< measured pose of the handle
   Vector6d V_DH = Vector6d::Zero();  ///< [v; w] of Ho and H, axes of D
   /// What the device exerted on the hand during the period before this sample.
-  Vector6d applied_F_Ho_D = Vector6d::Zero();
-  std::array<double, kMaxArmJoints> q{};  ///< measured joint coordinates [rad] or [m]
-  double gripper_opening = 0;             ///< [rad], zero is closed
+  Vector6d applied_F_Ho_D = Vector6d::Zero();  ///< [f; m] about Ho, axes of D [N, N m]
+  std::array<double, kMaxArmJoints> q{};       ///< measured joint coordinates [rad] or [m]
+  double gripper_opening = 0;                  ///< [rad], zero is closed
 };
 
 /// What the motors are to do until the next command.
@@ -60,7 +60,7 @@ struct MasterCommand {
   /// The device goes to zero by itself after this time of the host's clock.
   std::int64_t valid_until_ns = std::numeric_limits<std::int64_t>::max();
   Vector6d F_Ho_D = Vector6d::Zero();  ///< kWrench; with kJointTorque: what the torques amount to
-  std::array<double, kMaxArmJoints> torque{};  ///< kJointTorque [N m], gravity not included
+  std::array<double, kMaxArmJoints> torque{};  ///< kJointTorque [N m] or [N], without gravity's
   double gripper_torque = 0;                   ///< opens the gripper [N m]
 };
 
@@ -91,7 +91,7 @@ class Master {
   /// advances its simulation to it. A sample without a pose, or without the joints of a device that
   /// senses them, is no new data: its switches count, everything else stays that of the last read.
   [[nodiscard]] IoStatus Read(std::int64_t now_ns, MasterState* state) noexcept;
-  /// Until its valid_until_ns.
+  /// Gives the motors a command, which holds until its valid_until_ns or the next one.
   [[nodiscard]] IoStatus Write(const MasterCommand& command) noexcept;
 
   /// The hand in D in the last sample, where that is known better than the sample tells: by a

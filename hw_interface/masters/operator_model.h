@@ -20,8 +20,8 @@ using HandMotion = std::function<HandTargetMotion(double time)>;
 ///
 ///   F_Ho = K (target - handle) + B (V_DT - V_DH),   K, B diagonal, rotations by their vector.
 struct OperatorImpedance {
-  double mass = 0;                                    ///< [kg], in [0, 5]
-  double stiffness = 0, damping = 0;                  ///< [N/m], [N s/m], >= 0
+  double mass = 0;                    ///< that moves with the handle [kg], in [0, 5]
+  double stiffness = 0, damping = 0;  ///< [N/m], [N s/m], >= 0
   double angular_stiffness = 0, angular_damping = 0;  ///< [N m/rad], [N m s/rad], >= 0
 };
 

@@ -10,8 +10,7 @@ namespace vmech {
 /// A master from a shared library with the C entry point of plugin.h.
 class PluginMaster : public Master {
  public:
-  /// @throws std::runtime_error if the library cannot be loaded, lacks the entry point, was made
-  /// for
+  /// @throws std::runtime_error if the library cannot be loaded, has no entry point, is made for
   ///         another version, or refuses the parameters.
   PluginMaster(const std::filesystem::path& library, const std::string& parameters);
   ~PluginMaster() override;

@@ -8,22 +8,23 @@
 
 namespace vmech {
 
-/// What the simulated master is and who holds it. Lists have one entry per joint.
+/// What the simulated master is like, and who holds it.
 struct SimulatedMasterOptions {
   double period = 1e-3;   ///< T [s], in [1e-5, 0.1]
   int substeps = 2;       ///< Runge-Kutta steps per period, 1..100; raise it for stiff operators
   int encoder_bits = 16;  ///< counts per turn are 2^bits; 8..24, or 0 for a perfect encoder
   int delay_periods = 0;  ///< whole periods from a command to its torque, 0..16
-  double lost_share = 0;  ///< share of commands that never arrive, in [0, 1); the last one holds
-  unsigned seed = 1;      ///< of the losses
+  double lost_share =
+      0;              ///< share of commands that never arrive, in [0, 0.999]; the last one holds
+  unsigned seed = 1;  ///< of the losses
   bool compensates_gravity = true;  ///< the device carries its own weight, from measured angles
-  double stop_stiffness = 300;      ///< of the joints' end stops [N m/rad], > 0
-  double stop_damping = 3;          ///< of the same [N m s/rad], >= 0
+  double stop_stiffness = 300;      ///< of the joints' end stops [N m/rad], in [1e-9, 1e6]
+  double stop_damping = 3;          ///< of the same [N m s/rad], in [0, 1e4]
   OperatorImpedance hand = ImpedanceOf(Grip::kRelaxed);  ///< stiffness and damping of the operator
   HandMotion motion;  ///< of the operator's target; none: stays where the handle starts
-  /// Moment that the operator closes the gripper with, at a time [s]; none: zero.
+  /// Moment [N m] with which the operator closes the gripper at a time [s]; none: zero.
   std::function<double(double time)> squeeze;
-  double gripper_damping = 0.2;  ///< [N m s/rad], > 0
+  double gripper_damping = 0.2;  ///< of the gripper [N m s/rad], in [1e-6, 1e3]
 
   /// @throws std::invalid_argument naming the field, its value and its range.
   void Validate() const;
@@ -43,15 +44,15 @@ class SimulatedMaster : public Master {
   SimulatedMaster(SimulatedMasterOptions options, ArmDescription arm);   ///< of another arm
   ~SimulatedMaster() override { Shutdown(); }
 
-  /// The true state, which a real master would not show.
+  /// The true joint coordinates [joints; rad or m], which a real master would not show.
   const VectorXd& q() const noexcept { return q_; }
-  const VectorXd& v() const noexcept { return v_; }  ///< [joints] [rad/s]
+  const VectorXd& v() const noexcept { return v_; }  ///< their velocities [joints; rad/s or m/s]
   double time() const noexcept { return time_; }     ///< simulated [s]
   /// Kinetic energy of the arm with the hand's mass, potential energy of the arm [J].
   double Energy() noexcept;
-  /// Presses or releases what a real device has as switches.
+  /// Holds or releases the dead-man switch.
   void SetDeadMan(bool held) noexcept { dead_man_ = held; }
-  /// A switch of the device.
+  /// Presses or releases the emergency stop.
   void SetEmergencyStop(bool pressed) noexcept { emergency_stop_ = pressed; }
 
  private:

@@ -11,8 +11,8 @@ struct SpacenavOptions {
   /// The daemon's socket; empty: $SPNAV_SOCKET, or where Debian's spacenavd puts it.
   std::string socket;
   double period = 1e-3;  ///< T at which it is read [s], in [1e-4, 0.1]
-  double speed = 1e-3;   ///< of the handle per count of deflection [m/s], in (0, 1]; full is 350
-  double angular_speed = 5e-3;  ///< [rad/s] per count, in (0, 10]
+  double speed = 1e-3;   ///< of the handle per count of deflection [m/s], in [1e-9, 1]; full is 350
+  double angular_speed = 5e-3;  ///< [rad/s] per count, in [1e-9, 10]
   Posed X_DH;                   ///< where the handle starts
 
   /// @throws std::invalid_argument naming field, value and range.

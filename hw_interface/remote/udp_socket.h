@@ -19,9 +19,8 @@ struct UdpAddress {
 /// A non-blocking UDP socket that speaks packets.
 class UdpSocket {
  public:
-  /// @throws std::invalid_argument if the address is not numeric, std::runtime_error if it cannot
-  /// be
-  ///         bound.
+  /// @throws std::invalid_argument if the address is not numeric;
+  ///         std::runtime_error if it cannot be bound.
   explicit UdpSocket(const UdpAddress& local);
   ~UdpSocket();
   UdpSocket(const UdpSocket&) = delete;

@@ -48,7 +48,7 @@ struct UdpPacket {
   RemoteCommand command;  ///< with kCommand
 };
 
-/// [bytes]
+/// The size of the largest packet [bytes].
 inline constexpr std::size_t kLargestPacket = 512;
 /// Room for any packet.
 using PacketBytes = std::array<std::byte, kLargestPacket>;

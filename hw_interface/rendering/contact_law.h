@@ -18,11 +18,12 @@ struct ContactLaw {
   ContactKind kind = ContactKind::kLinear;  ///< linear, viscoelastic or Hunt and Crossley's
   Vector6d stiffness = Vector6d::Zero();    ///< K, diagonal [N/m], [N m/rad], >= 0
   Vector6d damping = Vector6d::Zero();      ///< B of kViscoelastic, diagonal [N s/m], [N m s/rad]
-  /// a of kHuntCrossley [s/m] and [s/rad], >= 0: 1.5 times what a metre a second costs in
-  /// restitution.
-  double loss = 1, angular_loss = 0.1;  ///< angular_loss of rotations
+  /// a of kHuntCrossley for positions [s/m] and for rotations [s/rad], >= 0. What strikes at a
+  /// speed v bounces off at about (1 - a v / 1.5) v, as long as a v is small.
+  double loss = 1, angular_loss = 0.1;  ///< `angular_loss` is that for rotations
 
-  /// w_c: what the mechanism's constraint does to itself by the hand, in the sense of e1.
+  /// w_c [N, N m] at a violation e1 [m, rad] that changes at `rate` [m/s, rad/s]: what the hand
+  /// exerts on the mechanism through the constraint, along e1. The hand feels -w_c.
   Vector6d Wrench(const Vector6d& e1, const Vector6d& rate) const noexcept;
   /// 1/2 e1' K e1 [J].
   double StoredEnergy(const Vector6d& e1) const noexcept {

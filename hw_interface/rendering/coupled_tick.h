@@ -36,12 +36,13 @@ struct CoupledHand {
   HandCoupling coupling;  ///< as this hand feels it
 };
 
-/// A coupling that a hand feels, as it is at a mechanism whose forces are scaled.
+/// The coupling at the mechanism, whose forces a hand feels times `scale`, for one that is given as
+/// the hand feels it.
 HandCoupling AtTheMechanism(HandCoupling coupling, double scale);
 
 /// Ticks in which each thing happened since the hand took hold.
 struct CoupledSummary {
-  long ticks = 0;            ///< all of them
+  long ticks = 0;            ///< since the hand took hold
   long at_limit = 0;         ///< a joint stood at a limit
   long slipping = 0;         ///< the coupling was at its largest wrench
   long stopped = 0;          ///< the loops did not close where the motion led; it stopped before

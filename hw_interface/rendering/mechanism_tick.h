@@ -13,8 +13,8 @@ namespace vmech {
 
 /// What a MechanismTick renders of a mechanism that follows the hand.
 struct MechanismTickOptions {
-  /// As the hand feels it; its stiffness is also the metric in which the mechanism follows the
-  /// hand.
+  /// The constraint as the hand feels it, stiffness in [0, 1e7], damping in [0, 1e5], losses in
+  /// [0, 1e3]; the stiffness is also the metric in which the mechanism follows the hand.
   ContactLaw law;
   /// Force at the hand over force at the mechanism, in [1e-6, 1e3]: 0.1 makes it ten times as
   /// light.
@@ -22,11 +22,11 @@ struct MechanismTickOptions {
   /// Largest share of the mechanism's inertia that the hand feels, in [0, 1]. Weight, springs and
   /// friction are felt whole.
   double inertia = 1;
-  /// Largest inertia that is felt over the handle's masses D [kg, kg m^2], in (0, 1e6]: the share
+  /// Largest inertia that is felt over the handle's masses D [-], in [1e-6, 1e6]: the share
   /// falls where the pose makes the mechanism heavier. Raise it for a truer inertia, lower it for a
   /// device that hums. D = 0: no limit.
   double inertia_ratio = 1e6;
-  Vector6d handle_masses = Vector6d::Zero();  ///< D, diagonal [kg, kg m^2]
+  Vector6d handle_masses = Vector6d::Zero();  ///< D, diagonal [kg, kg m^2], each in [0, 1e6]
   /// Roll-off of the acceleration [s], in [0, 0.1]: longer renders heavier mechanisms with less
   /// noise, and lags by as much. For estimators that find velocities alone.
   double roll_off = 8e-3;

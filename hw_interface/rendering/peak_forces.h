@@ -17,7 +17,7 @@ class PeakForces {
 
   /// "force main", ... behind the names that are there already, as far as kMaxChannels allow.
   void AppendNames(std::vector<std::string>* names) const;
-  void Reset() noexcept;  ///< all are zero
+  void Reset() noexcept;  ///< makes all of them zero
   /// The joints' wrenches of a tick; writes their forces [N] into as many channels as there are.
   void Add(const std::vector<Wrenchd>& joints, std::span<double> channels) noexcept;
 

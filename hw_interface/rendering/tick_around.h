@@ -13,7 +13,7 @@ namespace vmech {
 /// A tick that adds something to the steps of another, to which it hands everything on.
 class TickAround : public Tick {
  public:
-  /// The tick that it is put around.
+  /// Takes the tick that it is put around.
   explicit TickAround(std::unique_ptr<Tick> tick) : tick_(std::move(tick)) {}
 
   std::vector<std::string> ChannelNames() const override { return tick_->ChannelNames(); }
@@ -22,7 +22,7 @@ class TickAround : public Tick {
   bool GraspAt(const Posed& X_WH) noexcept override { return tick_->GraspAt(X_WH); }
   void Reset() noexcept override { tick_->Reset(); }
   bool UsesObservedHand() const noexcept override { return tick_->UsesObservedHand(); }
-  /// By StepHands.
+  /// One hand's step, by StepHands.
   TickOutput Step(const TickInput& input, std::span<double> channels) noexcept override {
     TickOutput output;
     StepHands({&input, 1}, {&output, 1}, channels);

@@ -52,8 +52,7 @@ struct DraggedPath {
 /// real-time path, with a point grasp on the picked point and the mouse as a hand without mass: a
 /// spring so stiff that the weight of all links stretches it by no more than half a thousandth of
 /// the characteristic length, critically damped against their mass, that slips beyond a hundred
-/// times that. Everything is in SI units,
-/// world axes. Not for several threads at once.
+/// times that. Everything is in SI units and world axes. Not for several threads at once.
 class ScreenMechanism {
  public:
   static constexpr double kStep = 1e-3;  ///< [s]
