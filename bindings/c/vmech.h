@@ -18,8 +18,8 @@
  * exerts on its second, about the second anchor's origin, in the axes of the first anchor. Freedoms
  * are those of all joints in their order, a spherical joint has three (the rotation vector).
  *
- * Structures begin with `struct_size`, sizeof of the structure as the program was compiled with it:
- * fields that a later version adds count as zero, which is their default.
+ * Structures but vmech_pose and vmech_anchor begin with `struct_size`, sizeof of the structure as
+ * the program was compiled with it: fields that a later version adds count as zero, their default.
  */
 #pragma once
 
@@ -43,8 +43,8 @@ enum {
   VMECH_FILE_ERROR = 1,    /* a file or a text is wrong or cannot be read; the message has lines */
   VMECH_INVALID = 2,       /* an argument contradicts itself or others, or is out of its range */
   VMECH_NO_SOLUTION = 3,   /* loops do not close, a motion cannot be followed, a run has failed */
-  VMECH_OUT_OF_MEMORY = 4, /* or a handle is NULL */
-  VMECH_INTERRUPTED = 5,   /* the program's `progress` said so */
+  VMECH_OUT_OF_MEMORY = 4, /* no memory is left, or a handle is NULL */
+  VMECH_INTERRUPTED = 5,   /* the program's `progress` returned 0 */
   VMECH_INTERNAL = 6       /* a defect of the library; the message says which */
 };
 
@@ -57,10 +57,10 @@ typedef struct vmech_result vmech_result;
 /* A mechanism in a hand. */
 typedef struct vmech_tick vmech_tick;
 
-/* A frame in another: its origin [m], and its axes as the columns of a rotation, row after row. */
+/* The pose of a frame in another one. */
 typedef struct vmech_pose {
   double position[3]; /* of its origin [m] */
-  double rotation[9]; /* R, [3, 3] */
+  double rotation[9]; /* R [3, 3], row after row; its columns are the axes of the frame */
 } vmech_pose;
 
 /* The version of the library, "0.2.0". Its soname changes where a program has to be compiled
@@ -102,18 +102,19 @@ typedef struct vmech_link {
   size_t struct_size; /* sizeof(vmech_link) */
   const char* name;   /* unique in the mechanism */
   double mass;        /* [kg] */
-  double center[3];   /* of gravity [m] */
-  double inertia[6];  /* xx yy zz xy xz yz, elements of the matrix about it [kg m^2] */
+  double center[3];   /* centre of gravity in the drawing frame [m] */
+  double inertia[6];  /* xx yy zz xy xz yz, of the matrix about it, drawing axes [kg m^2] */
 } vmech_link;
 /* Adds a link; the first is the ground. */
 VMECH_API int32_t vmech_add_link(vmech_mechanism* mechanism, const vmech_link* link);
 
 /* A frame on a link, in the link's drawing frame. `z` and `x` need not be of length 1; x is made
- * square to z. All zero: the drawing axes. */
+ * square to z. A zero `x`: any direction across z; a zero `z`: that of the drawing; both zero: the
+ * drawing axes. */
 typedef struct vmech_anchor {
   int32_t link;      /* index of the link */
   double origin[3];  /* in the drawing frame [m] */
-  double z[3], x[3]; /* directions in it */
+  double z[3], x[3]; /* directions in the drawing frame */
 } vmech_anchor;
 
 /* Which freedoms a joint has, in their order. */
@@ -134,7 +135,7 @@ typedef struct vmech_joint {
   const char* name;           /* unique in the mechanism */
   vmech_joint_type type;      /* decides its freedoms */
   vmech_anchor first, second; /* they coincide where the joint's coordinates are zero */
-  double pitch;               /* VMECH_SCREW [m/rad] */
+  double pitch;               /* VMECH_SCREW: travel [m/rad] */
   /* Where the assembly starts, a value per freedom; NULL: anywhere. Of a spherical joint four, a
    * unit quaternion w x y z. */
   const double* start;
@@ -163,7 +164,7 @@ VMECH_API int32_t vmech_mechanism_find(const vmech_mechanism* mechanism, vmech_i
 typedef struct vmech_parameter {
   size_t struct_size; /* sizeof(vmech_parameter) */
   const char* name;   /* as in the file */
-  const char* unit;   /* "mm", or that of the setting; empty of a number */
+  const char* unit;   /* "mm", or that of the setting; empty for a plain number */
   double value;       /* in the unit */
 } vmech_parameter;
 /* The parameters of the file in its order; VMECH_INVALID beyond the last. */
@@ -195,10 +196,10 @@ VMECH_API vmech_status vmech_study_parameter(const vmech_study* study, size_t in
 typedef struct vmech_drive {
   size_t struct_size;                /* sizeof(vmech_drive) */
   int32_t joint, freedom;            /* indices; freedoms count from 0 */
-  double start, speed, acceleration; /* [m] or [rad], and per s, s^2 */
+  double start, speed, acceleration; /* [m, m/s, m/s^2] or [rad, rad/s, rad/s^2] */
   size_t rows;                       /* of the table; 0: there is none */
   const double* times;               /* [rows] increasing [s] */
-  const double* values;              /* [rows] */
+  const double* values;              /* [rows] coordinate [m] or [rad] */
 } vmech_drive;
 /* Adds a motor. */
 VMECH_API vmech_status vmech_study_add_drive(vmech_study* study, const vmech_drive* drive);
@@ -206,8 +207,8 @@ VMECH_API vmech_status vmech_study_add_drive(vmech_study* study, const vmech_dri
  * not. */
 VMECH_API vmech_status vmech_study_set_times(vmech_study* study, const double* times, size_t count,
                                              double cycle);
-/* A constant wrench on a link, about a point of it in its drawing frame; in the axes of the world,
- * or of the link where `in_link_axes` is not 0. */
+/* A constant wrench [N, N m] on a link, about a point of it in its drawing frame [m]; in the axes
+ * of the world, or of the link where `in_link_axes` is not 0. */
 VMECH_API vmech_status vmech_study_add_load(vmech_study* study, int32_t link, const double point[3],
                                             const double wrench[6], int32_t in_link_axes);
 
@@ -226,13 +227,13 @@ typedef struct vmech_run_options {
  * stops early has VMECH_NO_SOLUTION or VMECH_INTERRUPTED, and what it had computed. */
 VMECH_API vmech_result* vmech_study_run(const vmech_study* study, const vmech_run_options* options);
 
-/* The hand, and who looks for the nearest pose. */
+/* The hand, and the solver that looks for the nearest pose. */
 typedef struct vmech_ik_options {
   size_t struct_size;    /* sizeof(vmech_ik_options) */
-  int32_t grasp;         /* its index */
+  int32_t grasp;         /* index of the grasp by which the hand holds */
   vmech_pose hand;       /* in the world; of a point grasp the position counts */
   double stiffness[6];   /* weighs positions [N/m] and rotations [N m/rad]; all 0: the default */
-  int32_t ignore_limits; /* of joints */
+  int32_t ignore_limits; /* 1: limits of joints do not hold */
   const char* solver;    /* as `vmech ik --solver`; NULL: "nullspace" */
 } vmech_ik_options;
 /* The pose nearest to a hand, loops closed, from the mechanism's start: a result of one pose with
@@ -243,14 +244,14 @@ VMECH_API vmech_result* vmech_ik(const vmech_mechanism* mechanism, const vmech_i
 /* What a search for assembly modes holds, and how long it searches. */
 typedef struct vmech_modes_options {
   size_t struct_size;           /* sizeof(vmech_modes_options) */
-  const int32_t* held;          /* freedoms that stay as they start */
-  size_t held_count;            /* of them */
-  int32_t with_hand;            /* 0: no hand */
-  int32_t grasp;                /* that has to be exactly at the hand */
+  const int32_t* held;          /* [held_count] indices of freedoms that stay as they start */
+  size_t held_count;            /* how many are held */
+  int32_t with_hand;            /* 1: a grasp has to be exactly at the hand; 0: there is no hand */
+  int32_t grasp;                /* index of that grasp */
   vmech_pose hand;              /* in the world */
-  int32_t ignore_limits;        /* 1: limits do not hold */
+  int32_t ignore_limits;        /* 1: limits of joints do not hold */
   int32_t max_starts, patience; /* of the search; 0: 20000 and 2000 */
-  uint64_t seed;                /* 0: 1 */
+  uint64_t seed;                /* of the random starts; 0 is 1 */
 } vmech_modes_options;
 /* All assembly modes as a result of so many poses, as vmech_ik but without errors. `options` may be
  * NULL. */
@@ -270,23 +271,28 @@ VMECH_API const char* vmech_result_warning(const vmech_result* result, size_t in
 typedef int32_t vmech_quantity;
 enum {
   VMECH_TIMES = 0,           /* [poses] [s] */
-  VMECH_WRENCHES = 1,        /* [poses, joints, 6] */
-  VMECH_POSITIONS = 2,       /* [poses, freedoms] coordinates */
-  VMECH_RATES = 3,           /* [poses, freedoms]; of a spherical joint the angular velocity */
-  VMECH_ACCELERATIONS = 4,   /* [poses, freedoms] */
+  VMECH_WRENCHES = 1,        /* [poses, joints, 6] [N], [N m] */
+  VMECH_POSITIONS = 2,       /* [poses, freedoms] coordinates [m] or [rad] */
+  VMECH_RATES = 3,           /* [poses, freedoms]; of a spherical joint the angular velocity of the
+                              * second anchor in the first, in axes of the second [rad/s] */
+  VMECH_ACCELERATIONS = 4,   /* [poses, freedoms] slopes of the rates */
   VMECH_DRIVE_MOTIONS = 5,   /* [poses, drives, 3] position, velocity, acceleration */
-  VMECH_DRIVE_FORCES = 6,    /* [poses, drives] */
+  VMECH_DRIVE_FORCES = 6,    /* [poses, drives] [N] or [N m] */
   VMECH_POWERS = 7,          /* [poses] of drives and hand [W] */
   VMECH_POWER_ERRORS = 8,    /* [poses] power in, less energy gained and lost, relative */
   VMECH_CLOSURES = 9,        /* [poses] loop error that is left, dimensionless */
-  VMECH_LINK_POSITIONS = 10, /* [poses, links, 3] of the drawing frames in the world */
-  VMECH_LINK_ROTATIONS = 11, /* [poses, links, 3, 3] */
-  VMECH_LINK_TWISTS = 12,    /* [poses, links, 6] velocity, angular velocity, world axes */
-  VMECH_HAND_WRENCHES = 13,  /* [poses, 6] of the hand on the mechanism, world axes */
-  VMECH_HAND_ERRORS = 14,    /* [poses, 6] from the grasp to the hand, world axes */
-  VMECH_ENERGIES = 15,       /* [poses, 6] kinetic, weight, springs, supplied, dissipated, error */
-  VMECH_MOTOR_FORCES = 16,   /* [poses, motors] */
-  VMECH_PEAKS = 17           /* [joints, 6] the largest size of every component */
+  VMECH_LINK_POSITIONS = 10, /* [poses, links, 3] origins of the drawing frames in the world [m] */
+  VMECH_LINK_ROTATIONS = 11, /* [poses, links, 3, 3] R of these frames, axes as columns */
+  VMECH_LINK_TWISTS = 12,    /* [poses, links, 6] velocity of the drawing frame's origin, angular
+                              * velocity, world axes */
+  VMECH_HAND_WRENCHES = 13,  /* [poses, 6] of the hand on the mechanism about the grasp's origin,
+                              * world axes */
+  VMECH_HAND_ERRORS = 14,    /* [poses, 6] of vmech_ik: from the grasp to the hand [m], [rad], world
+                              * axes */
+  VMECH_ENERGIES = 15,       /* [poses, 6] of a simulation: kinetic, weight, springs, supplied,
+                              * dissipated, error [J] */
+  VMECH_MOTOR_FORCES = 16,   /* [poses, motors] of a simulation [N] or [N m] */
+  VMECH_PEAKS = 17           /* [joints, 6] the largest size of every component of the wrenches */
 };
 /* Numbers of a result where they lie: that of the indices i, j, .. is
  * *(const double*)((const char*)data + i strides[0] + j strides[1] + ..). All but
@@ -320,16 +326,16 @@ VMECH_API vmech_certainty vmech_result_certainty(const vmech_result* result, siz
 /* The bearings of a joint that the study asks for, one or two. */
 typedef struct vmech_bearings {
   size_t struct_size;         /* sizeof(vmech_bearings) */
-  int32_t joint;              /* its index */
-  int32_t is_met;             /* every position has a bearing, and they live as long as asked */
-  int32_t is_certain;         /* statics determines what loads them */
-  int32_t count;              /* of positions */
-  double life_hours;          /* of all together at the required reliability; 0: one is missing */
+  int32_t joint;              /* index of the joint */
+  int32_t is_met;             /* 1: every position has a bearing, and they live as long as asked */
+  int32_t is_certain;         /* 1: statics determines what loads them */
+  int32_t count;              /* of positions, 1 or 2 */
+  double life_hours;          /* of all together at that reliability [h]; 0: one is missing */
   const char* designation[2]; /* chosen, or what came closest; NULL without any */
-  double bearing_hours[2];    /* life of each */
-  double static_safety[2];    /* C0 / P0 */
+  double bearing_hours[2];    /* life of each at the required reliability [h] */
+  double static_safety[2];    /* C0 / P0 of each */
 } vmech_bearings;
-/* VMECH_INVALID beyond the last. */
+/* The bearings of the study's entry `index`; VMECH_INVALID beyond the last. */
 VMECH_API vmech_status vmech_result_bearings(const vmech_result* result, size_t index,
                                              vmech_bearings* bearings);
 
@@ -338,13 +344,13 @@ VMECH_API vmech_status vmech_result_bearings(const vmech_result* result, size_t 
 /* What couples hand and mechanism, and how often. */
 typedef struct vmech_tick_options {
   size_t struct_size;  /* sizeof(vmech_tick_options) */
-  int32_t grasp;       /* its index */
-  double period;       /* between two ticks [s] */
-  double stiffness[6]; /* of the spring at the hand [N/m], [N m/rad] */
-  double damping[6];   /* beside it [N s/m], [N m s/rad] */
-  double max_force;    /* the spring slips beyond it [N]; 0: never */
-  double max_moment;   /* [N m] */
-  double scale;        /* force at the hand over force at the mechanism; 0: 1 */
+  int32_t grasp;       /* index of the grasp by which the hand holds */
+  double period;       /* between two ticks [s], in [1e-7, 0.05] */
+  double stiffness[6]; /* of the spring as the hand feels it [N/m], [N m/rad], along world axes */
+  double damping[6];   /* of a damper beside it [N s/m], [N m s/rad] */
+  double max_force;    /* the spring slips beyond this force [N]; 0: never */
+  double max_moment;   /* the same of the moment [N m]; 0: never */
+  double scale;        /* force at the hand over force at the mechanism, in [1e-6, 1e3]; 0 is 1 */
 } vmech_tick_options;
 /* The mechanism moves by its own dynamics, and the hand holds its grasp by a spring and a damper.
  * It starts assembled, where the mechanism starts, at rest. */
@@ -356,9 +362,10 @@ VMECH_API void vmech_tick_free(vmech_tick* tick);
 VMECH_API vmech_status vmech_tick_status(const vmech_tick* tick);
 /* What the handle says of its status. */
 VMECH_API const char* vmech_tick_message(const vmech_tick* tick);
-/* One period with the hand at a pose in the world: what the hand is to feel, about its origin,
- * world axes. No memory, lock or system call. VMECH_NO_SOLUTION, and a wrench of zero, where there
- * is no sound one: the program stops its motors. */
+/* One period with the hand at a pose in the world. Writes what the hand is to feel [N, N m], about
+ * the hand's origin, world axes. No memory, lock or system call. VMECH_NO_SOLUTION, and a wrench of
+ * zero, where there is no sound one: the program stops its motors. Any other failure (a handle that
+ * has failed, NULL) leaves `wrench` as it was: the program must not send it. */
 VMECH_API vmech_status vmech_tick_step(vmech_tick* tick, const vmech_pose* hand, double wrench[6]);
 /* The grasp frame now, in the world. */
 VMECH_API vmech_status vmech_tick_grasp(const vmech_tick* tick, vmech_pose* pose);
