@@ -11,10 +11,10 @@ namespace vmech {
 /// [Steele, Lea & Flood 2014], and nothing but sums and products of its outputs.
 class PortableRandom {
  public:
-  /// Any number; equal seeds give equal series.
+  /// `seed` is any number; equal seeds give equal series.
   explicit PortableRandom(uint64_t seed) : state_(seed) {}
 
-  uint64_t Next();                     ///< all 64 bits
+  uint64_t Next();                     ///< the next number, all of its 64 bits random
   double Uniform();                    ///< in [0, 1), 53 bits
   double Between(double a, double b);  ///< in [a, b)
   int Below(int n);                    ///< 0 .. n - 1

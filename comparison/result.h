@@ -27,7 +27,7 @@ enum class Verdict {
   kNotPosed,  ///< the mechanism has no problem of this kind
 };
 
-/// Which of the configurations that meet a target was found.
+/// Which of the configurations that reach a target was found.
 enum class Branch {
   kUnknown,  ///< nothing was found
   kOwn,      ///< that from which the target was made
@@ -48,8 +48,8 @@ struct Result {
   SolverEntry solver;                  ///< that was asked
   Verdict verdict = Verdict::kFailed;  ///< how it ended
   std::string message;                 ///< of the solver; empty where it succeeded
-  int targets = 1;                     ///< of a path; else 1
-  int reached = 0;                     ///< of these
+  int targets = 1;                     ///< how many a path has; else 1
+  int reached = 0;                     ///< how many of these were reached
   int jumps = 0;                       ///< of a path: to another branch from one target to the next
   int iterations = 0;                  ///< of the solver's own count
   int evaluations = 0;                 ///< of residuals

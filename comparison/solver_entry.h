@@ -11,16 +11,16 @@
 namespace vmech {
 
 /// Who takes part in a comparison: the back ends of solvers/, and the fast path
-/// (kinematics/hand_tracker.h), which follows paths only.
+/// (kinematics/inverse/hand_tracker.h), which follows paths only.
 class SolverEntry {
  public:
-  SolverEntry() = default;  ///< the first one
-  /// Any but the fast path.
+  SolverEntry() = default;  ///< the first back end
+  /// A back end.
   explicit SolverEntry(Backend backend) : place_(static_cast<int>(backend)) {}
-  static SolverEntry FastPath();  ///< the tracker of hands
+  static SolverEntry FastPath();  ///< HandTracker
 
   std::string_view name() const;  ///< as in tables and on the command line
-  /// None for the fast path.
+  /// The back end; none for the fast path.
   std::optional<Backend> backend() const;
   /// The fast path takes paths alone.
   bool Takes(const TargetBlock& block) const { return backend() || block.is_path(); }
@@ -32,9 +32,9 @@ class SolverEntry {
   int place_ = 0;  // in the order of tables: that of Backend, then the fast path
 };
 
-/// All of them, in the order of tables.
+/// All solvers, in the order of tables.
 std::vector<SolverEntry> AllContestants();
-/// The one of a name; none if there is none.
+/// The solver of a name; nothing if there is no such solver.
 std::optional<SolverEntry> ContestantFromName(std::string_view name);
 
 }  // namespace vmech

@@ -13,7 +13,7 @@ struct Tally {
   int problems = 0;        ///< those that count
   int succeeded = 0;       ///< as Succeeded()
   int targets = 0;         ///< those of paths each by itself
-  int reached = 0;         ///< of targets
+  int reached = 0;         ///< how many of these were reached
   int jumps = 0;           ///< of paths, to another branch
   int own = 0, other = 0;  ///< branches of what succeeded
 
@@ -21,7 +21,7 @@ struct Tally {
   double share() const { return problems == 0 ? 0 : double(succeeded) / problems; }
 };
 
-/// Which results count.
+/// Tells which results count.
 using Filter = std::function<bool(const Result&)>;
 
 /// Counts the results that the filter lets pass.

@@ -39,13 +39,13 @@ struct TargetBlock {
   TargetKind kind = TargetKind::kReachable;  ///< where targets lie
   StartKind start = StartKind::kNear;        ///< where solves start
   int count = 1;                             ///< problems per mechanism
-  double start_distance = 0.1;               ///< kNear: from the target's configuration
-  double offset = 0.1;      ///< kUnreachable: of the target from the grasp [lengths, rad]
-  double closeness = 1e-3;  ///< kSingular: largest smallest singular value; see target_maker.h
-  int steps = 50;           ///< kTracking, kDeadCentre: targets on the path
-  double step = 0.02;       ///< kTracking, kDeadCentre: from one to the next
+  double start_distance = 0.1;  ///< kNear: of the start from the target's configuration
+  double offset = 0.1;          ///< kUnreachable: of the target from the grasp [as above]
+  double closeness = 1e-3;      ///< kSingular: largest smallest singular value; see target_maker.h
+  int steps = 50;               ///< kTracking, kDeadCentre: targets on the path
+  double step = 0.02;           ///< kTracking, kDeadCentre: from one target to the next
 
-  /// Targets that follow on one another.
+  /// True if the targets follow one another on a path.
   bool is_path() const { return kind == TargetKind::kTracking || kind == TargetKind::kDeadCentre; }
 };
 

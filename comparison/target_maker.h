@@ -19,7 +19,7 @@ class Subject {
   Subject& operator=(const Subject&) = delete;
 
   const KinematicTree& tree() const { return tree_; }   ///< of the assembled mechanism
-  InverseKinematics& problem() { return problem_; }     ///< pose of the grasp as the target
+  InverseKinematics& problem() { return problem_; }     ///< brings the grasp to a target
   const VectorXd& q_start() const { return q_start_; }  ///< closed
   ClosedWalk WalkFrom(const VectorXd& q, PortableRandom* random) const;  ///< q closed
 

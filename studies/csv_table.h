@@ -16,10 +16,10 @@ struct CsvTable {
   std::string file;                          ///< for messages
   std::vector<std::string> names;            ///< of columns, unique
   int names_line = 0;                        ///< in the file, counted from 1
-  std::vector<std::vector<double>> columns;  ///< by name
-  std::vector<int> lines;                    ///< of each row
+  std::vector<std::vector<double>> columns;  ///< [names, rows] the values
+  std::vector<int> lines;                    ///< [rows] line of each in the file, from 1
 
-  size_t rows() const { return lines.size(); }  ///< without the names'
+  size_t rows() const { return lines.size(); }  ///< rows of values
   /// A column by its name; null if there is none.
   const std::vector<double>* Find(std::string_view name) const;
 };
@@ -32,7 +32,8 @@ constexpr size_t kMaxTableBytes = size_t{256} << 20;
 /// an apostrophe before it, by which spreadsheets know a text.
 std::string CsvCell(std::string_view text);
 
-/// @throws FileErrors with everything that is wrong. `name` stands for the file in messages.
+/// Reads a table from the text of a file; `name` stands for the file in messages.
+/// @throws FileErrors with everything that is wrong.
 CsvTable ParseCsvTable(std::string_view text, const std::string& name);
 
 }  // namespace vmech

@@ -40,7 +40,7 @@ struct EvaluatedDesign {
 
 /// How a design is searched.
 struct DesignOptions {
-  int threads = 1;         ///< >= 1, a start each
+  int threads = 1;         ///< >= 1, among which the derivatives of a design are shared out
   int starts = 1;          ///< the design as it is, and others that are spread over the bounds
   ProgramOptions program;  ///< of each start
   /// What an interrupted search for the same had looked at, in its order: the search goes the same

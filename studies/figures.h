@@ -21,7 +21,7 @@ enum class FigureKind {
   kTransmission  ///< how far the transmission angle is from a right angle [deg]
 };
 
-/// How a course over the poses becomes one number.
+/// How the values at all poses become one number.
 enum class Reduction {
   kPeak,        ///< the largest; its derivative is that of the pose that has it
   kSmoothPeak,  ///< (sum of x^p)^(1/p): smooth, and never below the peak
@@ -32,7 +32,7 @@ enum class Reduction {
 struct Figure {
   FigureKind kind = FigureKind::kForce;  ///< what is measured
   int index = -1;  ///< of the joint, the drive, the entry of StudyOutcome::bearings or of `paths`
-  Reduction reduction = Reduction::kPeak;  ///< of its history to one number
+  Reduction reduction = Reduction::kPeak;  ///< how its values at all poses become one number
   std::string name;                        ///< "pin.force", "main.drive.rms", "wrist.life", "mass"
   std::string unit;                        ///< "N"
   double power = 32;                       ///< p of a smooth peak

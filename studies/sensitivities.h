@@ -10,7 +10,7 @@ namespace vmech {
 
 /// How derivatives of a study are computed.
 struct SensitivityOptions {
-  int threads = 1;            ///< 1..64; the result does not depend on it
+  int threads = 1;            ///< >= 1; the result does not depend on it
   bool undetermined = false;  ///< also of figures that statics does not determine, by the rule
 };
 
@@ -18,12 +18,13 @@ struct SensitivityOptions {
 struct FigureSlopes {
   Figure figure;               ///< which one
   double value = 0;            ///< in figure.unit
-  int pose = -1;               ///< at which a peak is reached
+  int pose = -1;               ///< index of the pose at which a peak is reached; -1: it is no peak
   std::string not_determined;  ///< components that statics leaves open; then there are no slopes
   /// [parameters] d figure / d parameter in their units; NaN where the parameter has none.
   std::vector<double> slopes;
 
-  /// Percent of the figure by a percent of the parameter. NaN if it has no slope.
+  /// By how many percent the figure changes for one percent of the parameter; NaN if it has no
+  /// slope.
   double Elasticity(size_t parameter, const StudyParameter& of) const;
 };
 

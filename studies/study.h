@@ -57,7 +57,7 @@ struct StudyFile {
   std::vector<WantedPath> paths = {};            ///< as in the file
   std::vector<Bearing> catalogue;                ///< the built-in one unless the file names another
   std::vector<StatedParameter> parameters = {};  ///< of the mechanism and the study
-  std::vector<ParameterSetting> settings = {};   ///< that it was read with
+  std::vector<ParameterSetting> settings = {};   ///< with which it was read
   std::vector<std::string> notes = {};  ///< what the file says in a manner that is no longer used
   /// The study itself, its mechanism, its tables and its catalogue, each once, as they were read.
   std::vector<InputFile> inputs = {};

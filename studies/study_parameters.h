@@ -9,7 +9,7 @@
 
 namespace vmech {
 
-/// A number by which a study can be varied.
+/// A number of a study that can be varied.
 struct StudyParameter {
   std::string name;  ///< "crank/pin.x", "coupler.mass", or of the files' block `parameters`
   std::string unit;  ///< "mm"
@@ -20,11 +20,11 @@ struct StudyParameter {
   bool from_file = false;
 };
 
-/// Gives a study values, those of its blocks `parameters` first.
+/// Gives the parameters of a study the values [parameters], those of its blocks `parameters` first.
 void PutAll(const std::vector<StudyParameter>& parameters, std::span<const double> values,
             StudyFile* file);
 
-/// Those of the blocks `parameters` of the study and its mechanism.
+/// The parameters of the blocks `parameters` of the study and its mechanism.
 std::vector<StudyParameter> FileParametersOf(const StudyFile& file);
 
 /// The numbers of the mechanism itself, in the units of its file: mass and centre of gravity of
