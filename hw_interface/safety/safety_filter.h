@@ -27,7 +27,7 @@ const char* NameOf(ForceOff cause) noexcept;
 /// What to do about a cause that trips, "" for the others: "render less with --scale, ...".
 const char* AdviceFor(ForceOff cause) noexcept;
 
-/// Stages that changed the wrench of a tick, as bits; also the order of the chain.
+/// Stages that changed the wrench of a tick, as bits.
 enum SafetyStage : std::uint32_t {
   kRamped = 1u << 0,
   kDamped = 1u << 1,
@@ -87,8 +87,8 @@ struct SafetyCounters {
 
 /// The last word on every wrench, between the tick and the device, for any device:
 ///
-///   finite? - gate (life cycle, link, e-stop, dead man) - soft start - passivity - brake - clamp
-///   on |f| and |m| that keeps the direction - slew limit - trips on speed and energy.
+///   gate (e-stop, life cycle, link, finite figures, dead man) - trips on speed and energy - soft
+///   start - passivity - brake - clamp on |f| and |m| that keeps the direction - slew limit.
 ///
 /// The brake is a damper on what the handle is faster than 0.7 of the speed that trips: something
 /// heavy that falls drags the handle along, and does not throw it.
