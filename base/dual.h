@@ -56,18 +56,18 @@ struct DualOf {
     const N ratio = a.value / b.value;
     return {ratio, (a.slope - ratio * b.slope) / b.value};
   }
-  /// Of values and slopes: where Eigen looks for a factor of zero or one.
+  /// Compares values and slopes: Eigen looks for factors of zero and one by it.
   friend bool operator==(const DualOf& a, const DualOf& b) {
     return a.value == b.value && a.slope == b.slope;
   }
-  /// Of values alone.
+  /// Compares the values alone.
   friend auto operator<(const DualOf& a, const DualOf& b) { return a.value < b.value; }
-  /// Of values alone.
+  /// Compares the values alone.
   friend auto operator>(const DualOf& a, const DualOf& b) { return a.value > b.value; }
-  /// Of values alone.
+  /// Compares the values alone.
   friend auto operator<=(const DualOf& a, const DualOf& b) { return a.value <= b.value; }
 
-  /// Of `a` where the condition holds, else of `b`: value and slope.
+  /// Value and slope of `a` where the condition holds, else those of `b`.
   template <typename Condition>
   friend DualOf Select(const Condition& condition, const DualOf& a, const DualOf& b) {
     return {Select(condition, a.value, b.value), Select(condition, a.slope, b.slope)};

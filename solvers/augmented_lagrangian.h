@@ -46,7 +46,7 @@ struct AugmentedLagrangianWorkspace {
                                 const AugmentedLagrangianOptions& options, VectorXd* x,
                                 AugmentedLagrangianWorkspace* workspace) noexcept;
 
-/// The same from zero multipliers, judged.
+/// The same from x0 and zero multipliers, with the outcome judged.
 Summary Solve(ConstrainedLeastSquares& problem, const AugmentedLagrangianOptions& options,
               const VectorXd& x0);
 

@@ -53,7 +53,7 @@ class NullspaceWorkspace {
 [[nodiscard]] FastOutcome Solve(ConstrainedLeastSquares& problem, const NullspaceOptions& options,
                                 VectorXd* x, NullspaceWorkspace* workspace) noexcept;
 
-/// The same, judged.
+/// The same from x0, with the outcome judged.
 Summary Solve(ConstrainedLeastSquares& problem, const NullspaceOptions& options,
               const VectorXd& x0);
 

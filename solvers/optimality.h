@@ -70,7 +70,7 @@ class OptimalityMeter {
   CompleteOrthogonal factors_, factors_with_bounds_;
 };
 
-/// The same, once.
+/// The same for a single use, without a meter to keep.
 Optimality MeasureOptimality(const std::vector<Bound>& bounds, const VectorXd& x,
                              const Linearization& at_x, double rank_tolerance = 1e-9);
 

@@ -42,7 +42,8 @@ struct PenaltyWorkspace {
 [[nodiscard]] FastOutcome Solve(ConstrainedLeastSquares& problem, const PenaltyOptions& options,
                                 VectorXd* x, PenaltyWorkspace* workspace) noexcept;
 
-/// The same, judged. The status is kBiased unless the bias is within the stopping rule.
+/// The same from x0, with the outcome judged. The status is kBiased unless the bias is within the
+/// stopping rule.
 Summary Solve(ConstrainedLeastSquares& problem, const PenaltyOptions& options, const VectorXd& x0);
 
 }  // namespace vmech

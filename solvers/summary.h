@@ -50,7 +50,7 @@ struct Summary {
   std::string BriefReport() const;  ///< one line
   std::string FullReport() const;   ///< one page
 
-  /// Of figures that a solve has not come to.
+  /// The value of figures that a solve has not come to: NaN.
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 };
 

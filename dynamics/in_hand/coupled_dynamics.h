@@ -54,7 +54,7 @@ class CoupledDynamics {
   /// range.
   CoupledDynamics(const KinematicTree& tree, std::span<const CoupledGrasp> hands, double step,
                   const VectorXd& q);
-  /// In one hand.
+  /// The same in one hand.
   CoupledDynamics(const KinematicTree& tree, const GraspFrame& grasp, const HandCoupling& coupling,
                   double step, const VectorXd& q);
 
@@ -79,7 +79,7 @@ class CoupledDynamics {
   /// much the force and the moment of a coupling may change [N], [N m].
   [[nodiscard]] DesignStatus ChangeDesign(const HeldDesign& from, const HeldDesign& to,
                                           const WrenchLimit& most) noexcept;
-  /// Of all changes on the mechanism [J]: by how much they have raised its energy.
+  /// Work of all changes of design on the mechanism [J]: by how much they have raised its energy.
   double design_work() const noexcept { return design_work_; }
   /// Where a hand is in the next step, and how it moves; it stays there.
   void SetHand(const MovingFrame& frame, int hand = 0) noexcept { hands_[hand].at = frame; }
@@ -88,7 +88,7 @@ class CoupledDynamics {
   /// A step with the first hand at X_WH, moving with V_WH [v; w] at Ho, world axes; or with its
   /// frame in W.
   [[nodiscard]] CoupledStatus Step(const Posed& X_WH, const Vector6d& V_WH) noexcept;
-  /// With the first hand at a frame in W that moves.
+  /// A step with the first hand at a frame that moves in W.
   [[nodiscard]] CoupledStatus Step(const MovingFrame& hand) noexcept;
 
   // After the last step.
@@ -101,7 +101,7 @@ class CoupledDynamics {
   Vector6d e1() const noexcept;
   /// The same of any hand, as kernels hold it.
   const Screw& stretch(int hand = 0) const noexcept { return hands_[hand].coupling.e1(); }
-  /// With Jacobians and inertias there.
+  /// The mechanism at q(), with its Jacobians and inertias.
   const GraspedMechanism& pose() const noexcept { return pose_; }
   Vector6d V_WG(int hand = 0) const noexcept;  ///< of Go, world axes [v; w]
   /// Hand on mechanism during the step, at Go, world axes: what the coupling pulls, and what of it
@@ -112,7 +112,7 @@ class CoupledDynamics {
   const std::vector<Wrenchd>& joints() const noexcept { return joints_; }
   /// Kinetic energy, weight, springs of joints and couplings [J].
   double Energy() const noexcept;
-  /// Of a hand's spring, and of what fades of it [J].
+  /// Energy of a hand's spring, and of what fades of it [J].
   double CouplingEnergy(int hand = 0) const noexcept {
     return hands_[hand].coupling.energy() + hands_[hand].fading.energy();
   }

@@ -17,14 +17,14 @@ class GraspedMechanism {
  public:
   /// Keeps a reference to the tree. `grasps`: of a hand each, at least one.
   GraspedMechanism(const KinematicTree& tree, std::span<const GraspFrame> grasps);
-  /// In one hand.
+  /// The same in one hand.
   GraspedMechanism(const KinematicTree& tree, const GraspFrame& grasp)
       : GraspedMechanism(tree, std::span(&grasp, 1)) {}
 
   int hands() const noexcept { return static_cast<int>(grasps_.size()); }  ///< at least 1
   /// Another grasp frame, from the next Set on.
   void SetGrasp(const GraspFrame& grasp, int hand = 0) noexcept { grasps_[hand].frame = grasp; }
-  /// As it is held now.
+  /// The grasp frame by which a hand holds the mechanism now.
   const GraspFrame& grasp(int hand = 0) const noexcept { return grasps_[hand].frame; }
 
   /// Takes the numbers of another design, from the next Set on. A hand at its grasp of `from` is at
@@ -42,7 +42,7 @@ class GraspedMechanism {
 
   Posed X_WG(int hand = 0) const noexcept;         ///< grasp frame in the world, of the last Set
   Frame grasp_frame(int hand = 0) const noexcept;  ///< the same
-  /// Where it is after SetLoops already.
+  /// Where the grasp frame is, known after SetLoops already.
   Frame FindGraspFrame(int hand = 0) const noexcept;
   Posed X_WB(int node) const noexcept;  ///< frame of a node of the tree in the world
   Matrix6Xd J() const;                  ///< [6, nv], V_WG = J v

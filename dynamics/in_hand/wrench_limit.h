@@ -7,8 +7,8 @@ namespace vmech {
 
 /// The largest force and moment that something exerts, in any direction.
 struct WrenchLimit {
-  double force = std::numeric_limits<double>::infinity();   ///< alone [N], > 0
-  double moment = std::numeric_limits<double>::infinity();  ///< alone [N m], > 0
+  double force = std::numeric_limits<double>::infinity();   ///< largest force alone [N], > 0
+  double moment = std::numeric_limits<double>::infinity();  ///< largest moment alone [N m], > 0
   /// Both draw on the same, as the motors of an arm: |f|/force + |m|/moment <= 1.
   bool together = false;
 
@@ -18,7 +18,7 @@ struct WrenchLimit {
     const double asked = together ? by_force + by_moment : std::max(by_force, by_moment);
     return asked > 1 ? 1 / asked : 1;
   }
-  /// Of a wrench that is so many times as large.
+  /// The limit that is `factor` times as large.
   WrenchLimit Times(double factor) const noexcept {
     return {factor * force, factor * moment, together};
   }

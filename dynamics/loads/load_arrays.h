@@ -153,7 +153,7 @@ class IndexIterator {
     ++index_;
     return *this;
   }
-  /// Of the same range.
+  /// True at the same index; both are of the same range.
   bool operator==(const IndexIterator& other) const { return index_ == other.index_; }
 
  private:
@@ -171,7 +171,7 @@ class JointLoads {
   JointLoads(const LoadArrays* arrays, size_t pose) : arrays_(arrays), pose_(pose) {}
   /// Joints of the mechanism; 0 of JointLoads(), which looks at no pose.
   size_t size() const { return arrays_ == nullptr ? 0 : arrays_->joint_count(); }
-  /// In the mechanism's order.
+  /// The joint with this index, in the mechanism's order.
   JointSample operator[](size_t joint) const { return arrays_->Joint(pose_, joint); }
   IndexIterator<JointLoads> begin() const { return {this, 0}; }     ///< at the first joint
   IndexIterator<JointLoads> end() const { return {this, size()}; }  ///< behind the last
@@ -191,7 +191,7 @@ class DriveLoads {
   DriveLoads(const LoadArrays* arrays, size_t pose) : arrays_(arrays), pose_(pose) {}
   /// Joint drives; 0 if a hand drives.
   size_t size() const { return arrays_ == nullptr ? 0 : arrays_->drive_count; }
-  /// In the study's order.
+  /// The drive with this index, in the study's order.
   DriveSample operator[](size_t drive) const { return arrays_->Drive(pose_, drive); }
   IndexIterator<DriveLoads> begin() const { return {this, 0}; }     ///< at the first drive
   IndexIterator<DriveLoads> end() const { return {this, size()}; }  ///< behind the last

@@ -37,7 +37,7 @@ struct Equilibrium {
   VectorXd q;           ///< [nq], loops closed
   double residual = 0;  ///< largest force that is left along a free motion [N], [N m]
   int iterations = 0;   ///< steps downhill
-  Stability stability = Stability::kStable;  ///< of those that can move
+  Stability stability = Stability::kStable;  ///< against the motions that are free
 };
 
 /// The equilibrium that is reached downhill from the simulation's start: loops closed, drives where

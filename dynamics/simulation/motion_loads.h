@@ -14,7 +14,7 @@ struct JointHistory {
   std::vector<double> times;                            ///< [times] increasing [s]
   std::vector<double> positions, rates, accelerations;  ///< [times, freedoms]
 
-  /// Of all joints together.
+  /// Freedoms of all joints together.
   size_t freedoms() const { return times.empty() ? 0 : positions.size() / times.size(); }
 };
 

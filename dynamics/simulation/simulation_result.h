@@ -58,7 +58,7 @@ struct SimulationEvent {
 /// The kind in words.
 std::string_view NameOf(SimulationEvent::Kind kind);
 
-/// Of the whole mechanism at one time [J].
+/// The energies of the whole mechanism at one time [J].
 struct EnergySample {
   double kinetic = 0;  ///< of all links
   double weight = 0;   ///< zero with all centres of gravity at the height of the reference point

@@ -41,7 +41,7 @@ class ArmModel {
   explicit ArmModel(std::shared_ptr<const ArmDescription> arm);
 
   const ArmDescription& description() const noexcept { return *arm_; }  ///< as it was given
-  /// The same, to keep.
+  /// The same, shared, for those who keep it.
   std::shared_ptr<const ArmDescription> shared_description() const noexcept { return arm_; }
   int joints() const noexcept { return arm_->tree.nv; }  ///< at most kMaxArmJoints
 

@@ -16,7 +16,7 @@ struct AuditFinding {
   double bound = 0;        ///< up to which it is sound
   std::string unit;        ///< "-" for shares
   std::uint64_t tick = 0;  ///< of the worst, counted from 0
-  /// Within the bound.
+  /// True if the worst is within the bound.
   bool sound() const { return worst <= bound; }  // not for a number that is none
 };
 

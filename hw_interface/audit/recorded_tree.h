@@ -13,7 +13,7 @@ struct RecordedTree {
   /// @throws std::invalid_argument if the recording does not hold its mechanism, names no grasp of
   /// it, or has other coordinates; FileErrors if that mechanism cannot be read.
   explicit RecordedTree(const RecordingHeader& header);
-  /// Of a session that runs here.
+  /// The mechanism of a session that runs here; `index` of the grasp.
   RecordedTree(const KinematicTree& held, int index, bool gripper);
 
   KinematicTree tree;    ///< whose q and v the ticks hold

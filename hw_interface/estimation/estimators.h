@@ -13,7 +13,7 @@ template <typename Coordinate>
 struct MotionEstimateOf {
   Coordinate x{}, v{}, a{};  ///< coordinate, velocity, acceleration
 };
-/// Of a single coordinate.
+/// The estimate of a single coordinate.
 using MotionEstimate = MotionEstimateOf<double>;
 
 /// The paper's way: v = (x_k - x_k-1)/T, a = (v_k - v_k-1)/T. An encoder step D gives an
@@ -30,9 +30,9 @@ class FiniteDifferences {
   MotionEstimate last_;
 };
 
-/// k [3] of a KalmanEstimator. `resolution` [unit] of the sensor, R = resolution^2 / 12, > 0;
-/// `jerk_density` [unit^2/s^5] > 0: raise it for faster motion, lower it for less noise. 1e4 suits
-/// a hand that moves radians.
+/// The gains k [3] of a KalmanEstimator. `resolution` [unit] of the sensor, R = resolution^2 / 12,
+/// in [1e-12, 1]; `jerk_density` [unit^2/s^5] in [1e-6, 1e12]: raise it for faster motion, lower it
+/// for less noise. 1e4 suits a hand that moves radians.
 std::array<double, 3> KalmanGains(double period, double resolution, double jerk_density);
 
 /// Steady-state Kalman filter of the state (x, v, a) driven by white jerk of density q_j, measured
@@ -46,7 +46,7 @@ std::array<double, 3> KalmanGains(double period, double resolution, double jerk_
 template <typename Coordinate = double>
 class KalmanEstimator {
  public:
-  /// As KalmanGains.
+  /// Parameters as those of KalmanGains.
   KalmanEstimator(double period, double resolution, double jerk_density = 1e4)
       : period_(period), gain_(KalmanGains(period, resolution, jerk_density)) {}
   void Reset() noexcept { started_ = false; }  ///< the next sample is the first
@@ -95,7 +95,8 @@ class QuadraticFit {
 class AdaptiveWindow {
  public:
   static constexpr int kMaxWindow = 64;  ///< samples
-  /// `noise`: largest error of a sample, half an encoder step; > 0. `window` samples, 2..64.
+  /// `noise`: largest error of a sample, half an encoder step, in [1e-12, 1] [unit]. `window`
+  /// samples, 2..64.
   AdaptiveWindow(double period, double noise, int window = 16);
   void Reset() noexcept { count_ = 0; }      ///< the next sample is the first
   MotionEstimate Update(double x) noexcept;  ///< a sample [m] or [rad]

@@ -54,7 +54,7 @@ class HandLoop {
   void Register(const Posed& X_WG) noexcept;  ///< lays the handle over it
   /// What the tick is told. `hand`: of the tick. The input refers to this.
   TickInput Prepare(int hand, Tick* tick, HandRecord* record) noexcept VMECH_NONBLOCKING;
-  /// Of a hand that has not come yet, or is lost.
+  /// What the tick is told of a hand that has not come yet, or is lost.
   TickInput Absent() noexcept;
   /// What the tick wants, in the device's axes.
   void Take(const TickOutput& wanted, HandPicture* picture, HandRecord* record) const noexcept;

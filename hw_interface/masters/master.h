@@ -10,10 +10,7 @@
 
 namespace vmech {
 
-/// A master is the device in the operator's hand. Frames: D its base, H its handle. A wrench is
-/// always what the device exerts on the hand, [f; m], about Ho, in the axes of D; its power is
-/// F_Ho_D . V_DH, positive when the device drives the hand.
-
+/// How far a master is set up, and what may come next.
 enum class Lifecycle : std::uint8_t {
   kUnconfigured,  ///< nothing is known; next: Configure
   kInactive,      ///< the link is up, states can be read, motors are off; next: Activate
@@ -64,7 +61,11 @@ struct MasterCommand {
   double gripper_torque = 0;                   ///< opens the gripper [N m]
 };
 
-/// The base of all masters. It owns the life cycle, the same for each:
+/// A master is the device in the operator's hand. Frames: D its base, H its handle. A wrench is
+/// always what the device exerts on the hand, [f; m], about Ho, in the axes of D; its power is
+/// F_Ho_D . V_DH, positive when the device drives the hand.
+///
+/// This class is the base of all masters. It owns the life cycle, the same for each:
 ///
 ///   unconfigured -Configure-> inactive -Activate-> active -Deactivate-> inactive
 ///   fault -Recover-> inactive;  any -Shutdown-> finalized

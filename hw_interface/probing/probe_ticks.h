@@ -93,7 +93,7 @@ class GuideTick : public Tick {
   void Reset() noexcept override;
   TickOutput Step(const TickInput& input, std::span<double> channels) noexcept override;
 
-  /// From the handle to its home [m].
+  /// Distance of the handle from its home [m].
   double distance() const noexcept { return (home_ - spring_.p()).norm(); }
 
  private:

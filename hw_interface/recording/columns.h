@@ -15,11 +15,11 @@ namespace vmech {
 /// Names of numbers that stand for something: the number is the index. Whatever has no name is
 /// written, and may be read, as its number.
 using ValueNames = std::vector<std::string>;
-/// Of an IoStatus.
+/// The names of the values of IoStatus.
 const ValueNames& IoNames();
-/// Of a ForceOff.
+/// The names of the values of ForceOff.
 const ValueNames& ForceOffNames();
-/// Of bits of SafetyStage together: "none", "ramped", "damped", "ramped+damped", ...
+/// The names of sets of bits of SafetyStage: "none", "ramped", "damped", "ramped+damped", ...
 const ValueNames& StageNames();
 
 /// Visits every column of a tick: the table is stated once, for all formats and both directions.
@@ -217,7 +217,7 @@ struct Column {
   CellKind kind;                      ///< how its text is read
   const ValueNames* names = nullptr;  ///< of kName: what it may be
 };
-/// Of a recording: one per cell of a row. Refers to the header.
+/// The columns of a recording, one per cell of a row. They refer to the header.
 std::vector<Column> ColumnsOf(const RecordingHeader& header);
 
 /// A row of a table, "0.1,ok,..", and the members of an object, "\"p_x\":0.1,\"io\":\"ok\",..".
@@ -225,11 +225,11 @@ void AppendRow(const RecordingHeader& header, const TickRecord& tick, std::strin
 /// The members of an object; `columns` are those of the header.
 void AppendMembers(const RecordingHeader& header, const std::vector<Column>& columns,
                    const TickRecord& tick, std::string* text);
-/// And back. `tick` is an EmptyTick or any other of this recording.
+/// Reads a row back. `tick` is an EmptyTick or any other of this recording.
 /// @throws std::runtime_error naming the column and what is wrong there.
 void ReadRow(const RecordingHeader& header, const std::vector<Column>& columns,
              std::string_view row, TickRecord* tick);
-/// The same of the members of an object.
+/// The same for the members of an object.
 void ReadMembers(const RecordingHeader& header, const std::vector<Column>& columns,
                  std::string_view members, TickRecord* tick);
 

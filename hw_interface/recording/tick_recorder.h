@@ -43,7 +43,7 @@ class TickRecorder {
   TickRecorder(const TickRecorder&) = delete;
   TickRecorder& operator=(const TickRecorder&) = delete;
 
-  /// From the loop.
+  /// Takes a tick from the loop, without waiting unless RecorderOptions::waits.
   void Take(const TickRecord& tick) noexcept;
   /// Writes what is left and the end of the file, down to the disk. Nothing can be taken any more.
   void Finish();

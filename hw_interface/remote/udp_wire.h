@@ -8,13 +8,14 @@
 
 namespace vmech {
 
-/// The datagrams between a host and a remote master: fixed layouts, little-endian, no padding, each
-/// with a checksum (CRC-32) at its end; well below an Ethernet frame, so never fragmented.
-///
-///   header | payload of its kind | crc32
-///
-/// Clocks of the two machines are never compared: time stamps are reflected, deadlines relative.
+// The datagrams between a host and a remote master: fixed layouts, little-endian, no padding, each
+// with a checksum (CRC-32) at its end; well below an Ethernet frame, so never fragmented.
+//
+//   header | payload of its kind | crc32
+//
+// Clocks of the two machines are never compared: time stamps are reflected, deadlines relative.
 
+/// What a packet is for.
 enum class PacketKind : std::uint16_t {
   kHello = 1,    ///< host -> device: who are you? No payload
   kInfo = 2,     ///< device -> host: DeviceInfo, without its arm

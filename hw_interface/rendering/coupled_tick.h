@@ -94,7 +94,7 @@ class CoupledTick : public Tick {
   [[nodiscard]] DesignStatus ChangeDesign(const HeldDesign& from, const HeldDesign& to,
                                           const WrenchLimit& most) noexcept;
 
-  /// As the last step left them.
+  /// The mechanism, as the last step left it.
   const CoupledDynamics& dynamics() const noexcept { return dynamics_; }
   const CoupledSummary& summary() const noexcept { return summary_; }  ///< since the hand took hold
   /// Largest force of each joint since the hand took hold [N].

@@ -11,8 +11,8 @@ struct CouplingChoice {
   double scale = 1;          ///< s, force at the hand over force at the mechanism
   double inertia_ratio = 0;  ///< lambda: largest inertia of the mechanism over the handle's own
   double weight = 0;         ///< force of the mechanism on a hand that keeps it here [N]
-  /// What a step of the encoders makes of the largest wrench: the work that a sample cannot tell
-  /// [J].
+  /// The work that a sample cannot tell: that of the largest wrench along a step of the encoders,
+  /// between 0.02 and 0.5 [J].
   double unseen_work = 0.02;
 
   /// Safety for a stiff coupling behind encoders: work that they cannot tell is forgiven, ten times

@@ -15,7 +15,7 @@ namespace vmech {
 /// S.
 class EnergyShares {
  public:
-  /// At least 1.
+  /// `hands`: how many, at least 1.
   explicit EnergyShares(int hands)
       : paid_(static_cast<size_t>(hands)), shares_(static_cast<size_t>(hands)) {}
 

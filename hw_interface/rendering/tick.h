@@ -75,7 +75,7 @@ class Tick {
   virtual void Show(TickPicture* picture) const noexcept { (void)picture; }
 
   // A mechanism in several hands at once; by default there is one, and the functions above are its.
-  /// `hand`, counted from 0, in [0, hands()).
+  /// How many hands hold the mechanism; below, `hand` is counted from 0.
   virtual int hands() const noexcept { return 1; }
   /// X_WG of a hand, counted from 0.
   virtual Posed HeldFrame(int hand) const noexcept {

@@ -14,7 +14,7 @@ class DesignPath {
   explicit DesignPath(const HeldDesign& start)
       : from_(start), to_(start), now_(start), next_(now_) {}
 
-  /// From where it is, straight to another design.
+  /// Sets out for another design, straight from where it is.
   void GoTo(const HeldDesign& to) noexcept;
   /// One step, by `change(from, to)`, a DesignStatus. True if the mechanism has changed.
   template <typename Change>

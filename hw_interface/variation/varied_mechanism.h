@@ -39,7 +39,7 @@ class VariedMechanism {
   KinematicTree ReadAt(const VectorXd& values, const KinematicTree& held, const VectorXd& q);
   /// "crank = 0.6 m, rod = 1.2 m"
   std::string Words(const VectorXd& values) const;
-  /// As settings.
+  /// The values as settings of the file's parameters.
   std::vector<ParameterSetting> Settings(const VectorXd& values) const;
   /// The text of the file with these values where its own stand.
   /// @throws std::runtime_error where they cannot be put there.

@@ -8,17 +8,7 @@
 
 namespace vmech {
 
-/// A mechanism prepared for computation: the spanning tree as a list of nodes, each carried by one
-/// elementary joint, and the loops that the cut joints close. Immutable.
-///
-/// A joint with several freedoms becomes a chain of elementary joints with massless nodes between
-/// them (universal = two revolutes, planar = two prismatics and a revolute, ...); only the
-/// spherical joint stays whole. Elementary joints move about or along the z axis of their node.
-///
-/// Coordinates q [nq] and velocities v [nv] are those of the tree joints, in node order; they
-/// differ for the spherical joint alone: four in q (unit quaternion w, x, y, z of R_FM), three in v
-/// (angular velocity of M in F, in the axes of M).
-
+/// How an elementary joint lets its node move in the parent.
 enum class NodeMotion { kFixed, kRevolute, kPrismatic, kScrew, kSpherical };
 
 /// The number of entries in v that a node has.
@@ -81,7 +71,16 @@ struct Loop {
   std::vector<LoopNode> path;  ///< nodes around the loop, those without a freedom included
 };
 
-/// A mechanism whose loops are cut: a tree of elementary joints, and the loops that close it.
+/// A mechanism prepared for computation: the spanning tree as a list of nodes, each carried by one
+/// elementary joint, and the loops that the cut joints close. Immutable.
+///
+/// A joint with several freedoms becomes a chain of elementary joints with massless nodes between
+/// them (universal = two revolutes, planar = two prismatics and a revolute, ...); only the
+/// spherical joint stays whole. Elementary joints move about or along the z axis of their node.
+///
+/// Coordinates q [nq] and velocities v [nv] are those of the tree joints, in node order; they
+/// differ for the spherical joint alone: four in q (unit quaternion w, x, y, z of R_FM), three in v
+/// (angular velocity of M in F, in the axes of M).
 struct KinematicTree {
   Mechanism mechanism;                     ///< with its start values
   SpanningTree spanning;                   ///< which joints are cut

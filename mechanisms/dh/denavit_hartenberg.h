@@ -10,24 +10,7 @@
 
 namespace vmech {
 
-/// Denavit-Hartenberg parameters of a mechanism, along its spanning tree. The axes are those of the
-/// links: they do not depend on the pose.
-///
-/// A link has one axis by which it is carried (the ground: z of the world) and one for each joint,
-/// cut joint and grasp that it carries. The row of such an axis leads to it from the frame of the
-/// carrying joint,
-///   X = Rz(theta + gamma + q) Tz(d + b) Tx(a) Rx(alpha) Ry(beta)        of a rotation,
-///   X = Rz(theta + gamma) Tz(d + b + q) Tx(a) Rx(alpha) Ry(beta)        of a translation,
-/// where the first axis of a link has gamma = b = 0 and its frame is the frame of the link. The
-/// others are the branches, with the two extra parameters of [Khalil & Kleinfinger 1986], which
-/// turn the first normal into theirs. A grasp, and either side of a cut joint, is a frame and not
-/// only an axis: it takes a second row, with theta and d alone.
-///
-/// A joint with several freedoms is a chain of elementary joints with links of no length between
-/// them: cylindrical along z, about z; universal about x, about y; planar along x, along y, about
-/// z; spherical about x, about y, about z. A joint that the tree passes from its second link to its
-/// first is the chain backwards, about the opposite axes, so that q keeps its sign.
-
+/// What moves along a row.
 enum class DhMotion { kFixed, kRotation, kTranslation, kScrew };
 
 /// A row of a Denavit-Hartenberg table: how the frame at its end lies in that at its beginning.
@@ -45,7 +28,23 @@ struct DhRow {
   AxesRelation relation = AxesRelation::kCoincident;  ///< of the axes at both ends
 };
 
-/// The Denavit-Hartenberg rows of a mechanism, and where its links and grasps are among them.
+/// Denavit-Hartenberg parameters of a mechanism, along its spanning tree. The axes are those of the
+/// links: they do not depend on the pose.
+///
+/// A link has one axis by which it is carried (the ground: z of the world) and one for each joint,
+/// cut joint and grasp that it carries. The row of such an axis leads to it from the frame of the
+/// carrying joint,
+///   X = Rz(theta + gamma + q) Tz(d + b) Tx(a) Rx(alpha) Ry(beta)        of a rotation,
+///   X = Rz(theta + gamma) Tz(d + b + q) Tx(a) Rx(alpha) Ry(beta)        of a translation,
+/// where the first axis of a link has gamma = b = 0 and its frame is the frame of the link. The
+/// others are the branches, with the two extra parameters of [Khalil & Kleinfinger 1986], which
+/// turn the first normal into theirs. A grasp, and either side of a cut joint, is a frame and not
+/// only an axis: it takes a second row, with theta and d alone.
+///
+/// A joint with several freedoms is a chain of elementary joints with links of no length between
+/// them: cylindrical along z, about z; universal about x, about y; planar along x, along y, about
+/// z; spherical about x, about y, about z. A joint that the tree passes from its second link to its
+/// first is the chain backwards, about the opposite axes, so that q keeps its sign.
 struct DhTable {
   std::vector<DhRow> rows;         ///< each after the one at which it begins
   std::vector<int> row_of_link;    ///< whose end frame is the frame of the link

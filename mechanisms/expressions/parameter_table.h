@@ -40,7 +40,7 @@ class ParameterTable {
   /// The index of the parameter; -1 if there is none of this name.
   int Find(std::string_view name) const;
   int size() const { return static_cast<int>(entries_.size()); }  ///< parameters that are declared
-  /// By its index.
+  /// The name of the parameter with this index.
   const std::string& name(int parameter) const { return entries_[parameter].name; }
   std::vector<std::string> names() const;  ///< in the order of their declaration
   /// The expression by which it is declared, and the one that holds: that which set it last, if

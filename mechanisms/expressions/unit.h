@@ -32,11 +32,11 @@ struct Unit {
 
   /// The factor.
   operator double() const { return factor; }  // NOLINT: it scales figures
-  /// Of a product of figures.
+  /// The unit of a product of figures.
   friend Unit operator*(const Unit& a, const Unit& b) {
     return {a.factor * b.factor, a.dimension * b.dimension};
   }
-  /// Of a ratio of figures.
+  /// The unit of a ratio of figures.
   friend Unit operator/(const Unit& a, const Unit& b) {
     return {a.factor / b.factor, a.dimension / b.dimension};
   }
@@ -45,7 +45,7 @@ struct Unit {
   friend auto operator*(const Unit& unit, const Eigen::MatrixBase<Derived>& figures) {
     return unit.factor * figures;
   }
-  Unit Power(double exponent) const;  ///< of that power of a figure
+  Unit Power(double exponent) const;  ///< the unit of that power of a figure
 };
 
 /// The unit of a symbol: m km cm mm um in ft, rad mrad deg rev, kg g mg t lb, s ms min h,

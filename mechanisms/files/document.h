@@ -182,7 +182,7 @@ class Document {
     std::filesystem::path path;  ///< absolute
     std::string digest;          ///< of its bytes, as Sha256
   };
-  /// Those who read such a file say so.
+  /// Notes a file that was read because the document names it.
   void NoteNamedFile(NamedFile file) { named_files_.push_back(std::move(file)); }
   /// The files that were noted, in the order in which they were read.
   const std::vector<NamedFile>& named_files() const { return named_files_; }

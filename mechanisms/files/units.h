@@ -41,7 +41,7 @@ struct Units {
 /// A unit is as in ParseUnit: "kg mm^2", "N m/deg".
 Units ReadUnits(const Node& node);
 
-/// Of six numbers along x, y, z and about x, y, z.
+/// The units of six numbers, along x, y, z and about x, y, z.
 std::array<Unit, 6> SixUnits(const Unit& along, const Unit& about);
 
 /// The length and the angle of the same block, with their symbols.

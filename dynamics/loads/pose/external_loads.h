@@ -11,7 +11,7 @@ namespace vmech {
 /// Precondition: inside the table, unless it repeats (OutsideTable). T: double or Dual.
 template <typename T>
 Wrench<T> WrenchAt(ExternalLoad::Over over, const LoadTableOf<T>& table, T at);
-/// Of a load with a table of doubles.
+/// The same for a load of a study.
 inline Wrenchd WrenchAt(const ExternalLoad& load, double at) {
   return WrenchAt<double>(load.over, load, at);
 }
