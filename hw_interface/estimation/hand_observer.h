@@ -45,8 +45,8 @@ class HandObserver {
   void Update(const MasterState& state, const Vector6d& F_Ho_D, int periods) noexcept;
 
   /// How much of the pose and the twist is the filter's, in [0, 1]. While a joint leans on its
-  /// stop, of which the model knows nothing, it goes to zero: the samples as they are, and their
-  /// differences.
+  /// stop, of which the model knows nothing, or the filter is off the samples by more than their
+  /// resolution, it goes to zero: the samples as they are, and their differences.
   double trust() const noexcept { return trust_; }
   const MovingFrame& hand_D() const noexcept { return hand_; }  ///< the handle in D
   Posed X_DH() const noexcept;                                  ///< its pose there

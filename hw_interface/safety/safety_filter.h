@@ -105,7 +105,7 @@ struct SafetyCounters {
 class SafetyFilter {
  public:
   /// @throws std::invalid_argument as Validate, or if neither the options nor the device state a
-  ///         largest force and moment.
+  ///         largest force. Without a largest moment no moment is sent.
   SafetyFilter(const SafetyOptions& options, const DeviceInfo& info);
 
   /// Once per tick, in their order.

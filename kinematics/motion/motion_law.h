@@ -22,7 +22,7 @@ struct MotionSample {
 /// SI units and radians.
 class MotionLaw {
  public:
-  /// position = start + speed t + acceleration t^2 / 2.
+  /// position = start + speed t + acceleration t^2 / 2, t in seconds from 0.
   /// @throws std::invalid_argument if one is not finite.
   static MotionLaw Uniform(double start, double speed, double acceleration = 0);
   /// @throws std::invalid_argument if the lengths differ, the table is empty, a value is not finite
@@ -31,7 +31,7 @@ class MotionLaw {
 
   /// True for MotionLaw(), a law that was not given: it has no position.
   bool empty() const { return pieces_.empty(); }
-  /// Precondition: not empty.
+  /// At a time [s]; outside a table by its first or last polynomial. Precondition: not empty.
   MotionSample At(double t) const;
   /// The roughness of the table; zero for a uniform motion.
   const TableRoughness& roughness() const { return roughness_; }
@@ -60,19 +60,18 @@ struct HandSample {
   Vector6d A_WH;  ///< [a; alpha] of Ho and H, world axes [m/s^2, rad/s^2]
 };
 
-/// How the hand moves: a cubic spline through positions, and one through the rotation vectors
-/// between consecutive orientations, accumulated in the frame of the first (smooth, and exact at
-/// the rows; meant for tables whose total turn stays below pi of the first row's orientation).
-/// Position and orientation dwell each for themselves, as MotionLaw does.
+/// How the hand moves: a cubic spline through positions, and one through the rotation vectors that
+/// lead from the first orientation to each other one, in the axes of the first (smooth, and exact
+/// at the rows). Position and orientation dwell each for themselves, as MotionLaw does.
 class HandLaw {
  public:
-  /// @throws std::invalid_argument as MotionLaw::Table, or for an orientation that is pi or more
-  ///         away from the first.
+  /// @throws std::invalid_argument as MotionLaw::Table, or for an orientation that is more than 178
+  ///         degrees (0.99 pi) away from the first.
   static HandLaw Table(const std::vector<double>& times, const std::vector<Posed>& poses);
 
   /// True for HandLaw(), a law that was not given: it has no pose.
   bool empty() const { return position_.empty(); }
-  /// Precondition: not empty.
+  /// At a time [s]; outside the table by its first or last polynomials. Precondition: not empty.
   HandSample At(double t) const;
   /// The roughness of its positions [m/s^2].
   TableRoughness position_roughness() const { return Together(position_); }

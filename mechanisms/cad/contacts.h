@@ -9,20 +9,21 @@
 
 namespace vmech {
 
-/// Joints that the geometry of two bodies suggests. Where a shaft sits in a bore, a ball in a
-/// socket, or plane lies on plane, the bodies are taken to stay in contact, and each contact keeps
-/// some components of the relative twist [v; w] at zero: with the axis a, the normal n and v at a
-/// point of the contact
-///
-///   shaft in bore   v x a = 0, w x a = 0
-///   ball in socket  v = 0
-///   plane on plane  v.n = 0,   w x n = 0
-///
-/// What all contacts together leave free is the joint: a rotation (revolute), a translation
-/// (prismatic), both along one axis (cylindrical), and so on. A shaft with end play between two
-/// shoulders counts as held by them. Planes by which a body on one shaft is drawn at its stop, from
-/// which it can turn away, do not count.
+// Joints that the geometry of two bodies suggests. Where a shaft sits in a bore, a ball in a
+// socket, or plane lies on plane, the bodies are taken to stay in contact, and each contact keeps
+// some components of the relative twist [v; w] at zero: with the axis a, the normal n and v at a
+// point of the contact
+//
+//   shaft in bore   v x a = 0, w x a = 0
+//   ball in socket  v = 0
+//   plane on plane  v.n = 0,   w x n = 0
+//
+// What all contacts together leave free is the joint: a rotation (revolute), a translation
+// (prismatic), both along one axis (cylindrical), and so on. A shaft with end play between two
+// shoulders counts as held by them. Planes by which a body on one shaft is drawn at its stop, from
+// which it can turn away, do not count.
 
+/// A joint that the geometry of two bodies suggests.
 struct ProposedJoint {
   JointType type = JointType::kRevolute;  ///< that leaves free what the contacts do
   Posed X_WJ;                             ///< of both anchors

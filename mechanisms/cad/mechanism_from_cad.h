@@ -13,10 +13,11 @@
 
 namespace vmech {
 
-/// From an assembly to a mechanism: bodies become links, named frames become anchors, two anchors
-/// of the same name on two bodies a joint. The anchors need not coincide in the file; how far they
-/// are apart is reported.
+// From an assembly to a mechanism: bodies become links, named frames become anchors, two anchors
+// of the same name on two bodies a joint. The anchors need not coincide in the file; how far they
+// are apart is reported.
 
+/// What a user says about an assembly that becomes a mechanism.
 struct CadImportOptions {
   std::string name;          ///< of the mechanism; empty: that of the file
   BodyOptions bodies;        ///< which parts are one body

@@ -8,8 +8,9 @@
 
 namespace vmech {
 
-/// Surfaces of two bodies that touch as drawn: shaft in bore, ball in socket, plane on plane.
+// Surfaces of two bodies that touch as drawn: shaft in bore, ball in socket, plane on plane.
 
+/// When two surfaces count as in contact.
 struct ContactOptions {
   /// Greatest gap or offset between surfaces in contact [m], 1e-7..1e-2. Larger finds looser fits,
   /// and neighbours that do not touch. A gap of exactly this is in contact.

@@ -9,8 +9,9 @@
 
 namespace vmech {
 
-/// What stands in a URDF file, in SI units and radians, before anything is made of it.
+// What stands in a URDF file, in SI units and radians, before anything is made of it.
 
+/// A link as a URDF file has it.
 struct UrdfLink {
   std::string name;                                ///< unique in the file
   int line = 0;                                    ///< from 1
