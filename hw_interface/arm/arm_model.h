@@ -37,7 +37,8 @@ ArmDescription WithMassAtHandle(const ArmDescription& arm, double mass);
 /// F_Ho what acts on the handle from outside. No function but the constructor allocates.
 class ArmModel {
  public:
-  /// @throws std::invalid_argument if the arm is not an open chain of at most kMaxArmJoints joints.
+  /// @throws std::invalid_argument if the arm is not an open chain of at most kMaxArmJoints joints,
+  ///         or if its torque limits or posture are not a number per joint.
   explicit ArmModel(std::shared_ptr<const ArmDescription> arm);
 
   const ArmDescription& description() const noexcept { return *arm_; }  ///< as it was given

@@ -79,9 +79,11 @@ class ScreenMechanism {
   /// The hand stops pulling. `keep`: it holds the point where that has come to, so that the spring
   /// carries what the mechanism puts on it and no more; else it opens, and the mechanism swings.
   void Release(bool keep);
-  void Swing();   ///< moves by its own dynamics from now on
+  /// Moves by its own dynamics from now on. @throws std::invalid_argument if no link has a mass.
+  void Swing();
   void Freeze();  ///< stands still from now on
-  /// Back to the start pose, frozen.
+  /// Back to the start pose, frozen. @throws std::runtime_error if the loops of a varied design do
+  /// not close near it; then it stays where it is.
   void Reset();
   /// Turns or shifts one freedom of a joint as near to `value` as limits and loops let it, on the
   /// same assembly branch, and freezes. @throws std::runtime_error where it cannot move there.
@@ -100,7 +102,8 @@ class ScreenMechanism {
   const DesignPath* design() const { return design_ ? &*design_ : nullptr; }
   double design_work() const { return design_work_; }  ///< of all changes [J]
 
-  /// Lets time pass, a whole number of steps.
+  /// Lets time pass, a whole number of steps. @throws std::runtime_error if the motion came to
+  /// numbers that are not finite; then it stands still.
   void Advance(int steps);
 
   ScreenState State() const;  ///< a copy of what is shown

@@ -12,6 +12,7 @@ struct GraspFrame {
 };
 
 /// The frame of the mechanism's grasp with this index.
+/// @throws std::invalid_argument if there is no such grasp.
 GraspFrame GraspFrameOf(const KinematicTree& tree, int grasp);
 
 }  // namespace vmech

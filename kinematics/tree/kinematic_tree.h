@@ -170,6 +170,7 @@ VectorXd StartCoordinates(const KinematicTree& tree);
 /// One velocity of the tree as text: "pin", or "ball.ry" for a freedom of a joint with several.
 std::string NameOfVelocity(const KinematicTree& tree, int v);
 /// Index in v of the given freedom, from 0, of a joint; -1 if the joint is cut.
+/// @throws std::invalid_argument if there is no such joint or freedom; so does CoordinateIndex.
 int VelocityIndex(const KinematicTree& tree, int joint, int freedom);
 /// Index in q of the given freedom, from 0, of a joint that is not spherical; -1 if it is cut.
 int CoordinateIndex(const KinematicTree& tree, int joint, int freedom);

@@ -49,11 +49,11 @@ class Contacts {
   };
   /// Stops that are reached at a speed into them.
   std::vector<Hit> FindHits(const ConstrainedMotion& motion) const;
-  /// It holds from now on.
+  /// The stop of a hit holds from now on.
   void CloseStop(const Hit& hit) { stops_[hit.stop].closed = hit.pressing > 0 ? 1 : -1; }
-  /// It holds already.
+  /// True if the stop of a hit holds already.
   bool IsClosed(const Hit& hit) const { return stops_[hit.stop].closed != 0; }
-  /// Joint and freedom of its limit.
+  /// The joint and freedom whose limit was hit.
   FreedomId FreedomOf(const Hit& hit) const { return stops_[hit.stop].at; }
 
   /// Friction rests where it does not slide; limits close at which a freedom stands. Needs joint
