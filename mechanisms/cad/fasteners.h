@@ -14,8 +14,9 @@ namespace vmech {
 ///   - sits by a shaft in bores, and touches others by shafts, bores and planes about one axis
 ///   only;
 ///   - is located: a plane stops it along the axis, or it joins two bodies;
-///   - is slim: its radius of gyration about the axis is at most sqrt(2) times that of its thickest
-///     fit (a cylinder has 1 / sqrt(2), hexagon bolts 1), its centre of gravity lies on the axis;
+///   - is slim: its radius of gyration about the axis is at most sqrt(2) times the radius of its
+///     thickest fit (1 / sqrt(2) of it for a cylinder, 1 for hexagon bolts), and its centre of
+///     gravity lies on the axis;
 ///   - is no larger than the largest body that it touches.
 /// A **nut or washer** sits around such a one, seats on a plane, and is flat and narrow.
 ///
