@@ -104,8 +104,7 @@ struct Simulation {
   /// loops do not allow is projected (SimulationResult::moved_rates).
   std::vector<StartRate> start_rates;
 
-  std::vector<double>
-      times;  ///< of the results [s], increasing, two at least; the first: the start
+  std::vector<double> times;  ///< of the results [s], increasing, at least two; starts at the first
   std::vector<CoordinateWatch> watches;  ///< looked out for all the time
 
   ReactionRule rule = ReactionRule::kStiffness;  ///< as LoadStudy::rule; not kPaperJoint

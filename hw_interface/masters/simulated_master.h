@@ -14,9 +14,8 @@ struct SimulatedMasterOptions {
   int substeps = 2;       ///< Runge-Kutta steps per period, 1..100; raise it for stiff operators
   int encoder_bits = 16;  ///< counts per turn are 2^bits; 8..24, or 0 for a perfect encoder
   int delay_periods = 0;  ///< whole periods from a command to its torque, 0..16
-  double lost_share =
-      0;              ///< share of commands that never arrive, in [0, 0.999]; the last one holds
-  unsigned seed = 1;  ///< of the losses
+  double lost_share = 0;  ///< share of commands that are lost, in [0, 0.999]; the last one holds
+  unsigned seed = 1;      ///< of the losses
   bool compensates_gravity = true;  ///< the device carries its own weight, from measured angles
   double stop_stiffness = 300;      ///< of the joints' end stops [N m/rad], in [1e-9, 1e6]
   double stop_damping = 3;          ///< of the same [N m s/rad], in [0, 1e4]

@@ -46,8 +46,8 @@ void GraspJacobian(const KinematicTree& tree, const TreeWorkspace<double>& ws, i
 
 /// Twist V_WQ [v; w] of a frame Q that is fixed in a node, about Qo, world axes. Needs V.
 Vector6d GraspTwist(const TreeWorkspace<double>& ws, int node, const Posed& X_BQ);
-/// Acceleration [a; alpha] of such a frame, of Qo and Q, world axes. Needs V and A; where
-/// SetGravity has given the ground an acceleration, it is in this one too.
+/// Acceleration [a; alpha] of such a frame, of Qo and Q against the ground, world axes: what
+/// SetGravity has given the ground is not in it. Needs V and A.
 Vector6d GraspAcceleration(const TreeWorkspace<double>& ws, int node, const Posed& X_BQ);
 
 // Small and everywhere: inline.

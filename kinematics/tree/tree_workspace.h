@@ -43,7 +43,7 @@ struct TreeWorkspace {
     FrameT<T> X;     ///< pose; its z axis is that of the node's elementary joint
     ScrewT<T> V;     ///< twist
     ScrewT<T> c;     ///< velocity product: what A would be if the parent's A and v' were zero
-    ScrewT<T> A;     ///< rate of V; the ground's is set by the caller (SetGravity)
+    ScrewT<T> A;     ///< rate of V, and what SetGravity has given the ground
     ScrewT<T> p;     ///< velocity product: what F would be if A were zero
     ScrewT<T> F;     ///< what the parent exerts on this node
   };
