@@ -31,8 +31,8 @@ struct SpanningTreeOptions {
 
 /// Cuts where it costs least: the joint with the most freedoms; on a tie, the one farthest from the
 /// ground, which leaves the two branches of a loop most even; then the later one in the file.
-/// @throws std::invalid_argument naming the links that no chain of joints connects to the ground,
-///         or a kept joint that cannot be kept because the kept joints close a loop.
+/// @throws std::invalid_argument as RequireValid; naming the links that no chain of joints connects
+///         to the ground, or a kept joint that cannot be kept because the kept joints close a loop.
 SpanningTree FindSpanningTree(const Mechanism& mechanism, const SpanningTreeOptions& options = {});
 
 }  // namespace vmech

@@ -51,7 +51,7 @@ struct ShakeOptions {
 
   /// @throws std::invalid_argument naming field, value and range.
   void Validate() const;
-  double total_seconds() const noexcept;  ///< shaking and blows together [s]
+  double total_seconds() const noexcept;  ///< of a run along all three axes, rests included [s]
 };
 
 /// Shakes the handle along x, y and z, one after the other, by five sines from 0.9 to 8.9 Hz whose
