@@ -31,6 +31,20 @@ MovingFrame MovingFrameOf(const HandSample& hand) {
   return {FrameOf(hand.X_WH), ScrewOf(hand.V_WH)};
 }
 
+/// Does a freedom's coordinate or rate count for what acts on the mechanism?
+bool Counts(const Simulation& simulation, const Joint& joint, FreedomId at) {
+  const auto is_here = [at](const FreedomId& other) {
+    return other.joint == at.joint && other.freedom == at.freedom;
+  };
+  const size_t k = static_cast<size_t>(at.freedom);
+  const bool passive = k < joint.passive.size() && HasPassive(joint.passive[k]);
+  const bool limited = std::isfinite(joint.lower[k]) || std::isfinite(joint.upper[k]);
+  return passive || limited ||
+         (simulation.table_coordinate && is_here(*simulation.table_coordinate)) ||
+         std::any_of(simulation.motors.begin(), simulation.motors.end(),
+                     [&](const JointMotor& motor) { return is_here(motor.at); });
+}
+
 }  // namespace
 
 void ContinueCutPositions(const KinematicTree& tree, const TreeWorkspace<double>& ws,
@@ -56,10 +70,31 @@ ActingForces::ActingForces(const Simulation& simulation, LoadModel* model)
     const Grasp& grasp = simulation.mechanism.grasps[simulation.hand->grasp];
     coupling_.emplace_back(simulation.hand->coupling, grasp.kind, 0.0);
   }
+  ListJoints();
   for (size_t l = 0; l < cut_positions_.size(); ++l) {
     const Joint& joint = model->tree.mechanism.joints[model->tree.loops[l].joint];
     if (joint.type == JointType::kSpherical) continue;
     std::copy(joint.start.begin(), joint.start.end(), cut_positions_[l].data());
+  }
+}
+
+void ActingForces::ListJoints() {
+  const KinematicTree& tree = model_.tree;
+  const std::vector<Joint>& joints = tree.mechanism.joints;
+  for (size_t j = 0; j < joints.size(); ++j) {
+    const Joint& joint = joints[j];
+    if (!joint.passive.empty()) passive_joints_.push_back(static_cast<int>(j));
+    if (HasDryFriction(joint)) all_in_tree_ = false;
+    for (int k = 0; k < FreedomsOf(joint.type); ++k) {
+      const FreedomId at{static_cast<int>(j), k};
+      if (!Counts(simulation_, joint, at)) continue;
+      const int v = VelocityIndex(tree, at.joint, k);
+      all_in_tree_ = all_in_tree_ && v >= 0 && joint.type != JointType::kSpherical;
+      if (!all_in_tree_) continue;
+      const Passive passive =
+          joint.passive.empty() ? Passive{} : joint.passive[static_cast<size_t>(k)];
+      tree_freedoms_.push_back({at, CoordinateIndex(tree, at.joint, k), v, passive});
+    }
   }
 }
 
@@ -75,6 +110,16 @@ void ActingForces::FindJoints(ConstrainedMotion* motion) {
   ContinueCutPositions(model_.tree, ws.tree, &here_);
   for (size_t l = 0; l < here_.size(); ++l) {
     ws.loads[model_.tree.loops[l].joint].position = here_[l];
+  }
+}
+
+void ActingForces::FindJointsThatCount(ConstrainedMotion* motion) {
+  if (!all_in_tree_) return FindJoints(motion);
+  LoadWorkspace<double>& ws = motion->ws();
+  for (const TreeFreedom& freedom : tree_freedoms_) {
+    JointLoad<double>& joint = ws.loads[freedom.at.joint];
+    joint.position[freedom.at.freedom] = ws.q[freedom.q];
+    joint.rate[freedom.at.freedom] = ws.v[freedom.v];
   }
 }
 
@@ -129,11 +174,20 @@ void ActingForces::Evaluate(double time, ConstrainedMotion* motion) {
 
 void ActingForces::Apply(ConstrainedMotion* motion) const {
   LoadWorkspace<double>& ws = motion->ws();
-  if (model_.has_passive) {
+  if (all_in_tree_) {
+    ActAlongTree(&ws);
+  } else if (model_.has_passive) {
     ws.exerted = exerted_.data();
     PassiveForces(model_, &ws);
   }
   GatherApplied(model_, &ws);
+}
+
+void ActingForces::ActAlongTree(LoadWorkspace<double>* ws) const {
+  for (const auto& [at, q, v, passive] : tree_freedoms_) {
+    const double force = exerted_[at.joint][at.freedom] + SpringForce(passive, ws->q[q], ws->v[v]);
+    ws->passive[v] = ws->along[at.joint][at.freedom] = force;
+  }
 }
 
 std::vector<Vector3d> ActingForces::BesideSprings(const ConstrainedMotion& motion) const {
@@ -169,10 +223,9 @@ double ActingForces::SuppliedPower(const ConstrainedMotion& motion) const {
 }
 
 double ActingForces::LostPower(const ConstrainedMotion& motion) const {
-  if (!model_.has_passive) return 0;
   const LoadWorkspace<double>& ws = motion.ws();
   double power = 0;
-  for (size_t j = 0; j < ws.loads.size(); ++j) {
+  for (const int j : passive_joints_) {
     const Joint& joint = model_.tree.mechanism.joints[j];
     const JointLoad<double>& load = ws.loads[j];
     for (size_t k = 0; k < joint.passive.size(); ++k) {
@@ -187,7 +240,7 @@ double ActingForces::LostPower(const ConstrainedMotion& motion) const {
 
 double ActingForces::SpringEnergy(const ConstrainedMotion& motion) const {
   double energy = 0;
-  for (size_t j = 0; model_.has_passive && j < exerted_.size(); ++j) {
+  for (const int j : passive_joints_) {
     const Joint& joint = model_.tree.mechanism.joints[j];
     for (size_t k = 0; k < joint.passive.size(); ++k) {
       const double length =

@@ -32,7 +32,9 @@ class ActingForces {
 
   /// Positions and rates of all joints into ws().loads of `motion`, which has pose and velocities.
   void FindJoints(ConstrainedMotion* motion);
-  /// Finds what motors, external loads and the hand do there. Needs FindJoints.
+  /// The same of those on which forces, limits or tables depend, and maybe of others.
+  void FindJointsThatCount(ConstrainedMotion* motion);
+  /// Finds what motors, external loads and the hand do there. Needs FindJointsThatCount.
   void Evaluate(double time, ConstrainedMotion* motion);
   /// Writes ws().passive and ws().applied: of these, of springs and dampers, and of dry friction by
   /// ws().sliding and the wrenches of ws().loads.
@@ -56,6 +58,15 @@ class ActingForces {
   Motion PoseOf(double time, const ConstrainedMotion& motion) const;
 
  private:
+  /// A freedom of a joint that is not cut.
+  struct TreeFreedom {
+    FreedomId at;
+    int q = -1, v = -1;  ///< where it is in q and v
+    Passive passive;
+  };
+
+  void ListJoints();
+  void ActAlongTree(LoadWorkspace<double>* ws) const;
   void ApplyExternal(double time, ConstrainedMotion* motion);
   void ApplyHand(double time, const ConstrainedMotion& motion);
   void RunMotors(double time, const ConstrainedMotion& motion);
@@ -64,6 +75,11 @@ class ActingForces {
 
   const Simulation& simulation_;
   LoadModel& model_;
+  std::vector<int> passive_joints_;  ///< those with springs, dampers or dry friction
+  /// Freedoms that count, if all of them are in the tree and none has dry friction, which is what
+  /// most mechanisms have: nothing is asked of cut joints then.
+  std::vector<TreeFreedom> tree_freedoms_;
+  bool all_in_tree_ = true;
   std::vector<VirtualCoupling> coupling_;  ///< none or one
   std::vector<Vector3d> exerted_;          ///< [joints]
   std::vector<double> motor_forces_;

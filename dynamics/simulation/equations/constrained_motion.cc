@@ -212,7 +212,12 @@ void ConstrainedMotion::SolveFree(VectorXd* s) noexcept {
   if (rows_.empty()) return;
   multipliers_.noalias() = B_ * *s - held_;
   held_factors_.Solve(multipliers_.data());
-  s->noalias() -= Y_ * multipliers_;
+  // What is held at rest has no rate at all, and not what rounding would leave of it.
+  constexpr double kRounding = 1e-15;
+  for (int k = 0; k < f; ++k) {
+    const double taken = Y_.row(k).dot(multipliers_), left = (*s)[k] - taken;
+    (*s)[k] = std::abs(left) <= kRounding * std::abs(taken) ? 0 : left;
+  }
 }
 
 void ConstrainedMotion::SetVelocities(const double* v, const double* rates) noexcept {

@@ -109,6 +109,7 @@ std::vector<RateRow> Contacts::Held() const {
 
 void Contacts::SetSliding(ConstrainedMotion* motion) const {
   constexpr double kBegins = 1e-12;  // tells the direction until there is speed
+  if (frictions_.empty()) return;
   LoadWorkspace<double>& ws = motion->ws();
   for (Vector3d& rates : ws.sliding) rates.setZero();
   for (const Friction& friction : frictions_) {

@@ -170,12 +170,16 @@ void EquationsOfMotion::CloseIfNearlySingular() {
   now_->motion.Close(kClosed, closed_.data());
 }
 
-void EquationsOfMotion::Place(double time, const double* q, const double* v) {
-  SetPose(q);
+void EquationsOfMotion::GoOnFromHere() {
   regular_->motion.MeasureColumns();
   // Behind a singular pose, at which no choice was better, this one is judged by its best again.
   regular_->best_pivot = std::max(regular_->best_pivot, regular_->motion.smallest_pivot());
   from_singular_ = now_ == singular_.get();
+}
+
+void EquationsOfMotion::Place(double time, const double* q, const double* v) {
+  SetPose(q);
+  GoOnFromHere();
   FindDriveMotion(time);
   now_->motion.SetVelocities(v, held_rates_.data());
   now_->forces.FindJoints(&now_->motion);
@@ -203,10 +207,8 @@ bool EquationsOfMotion::Evaluate(double time, const double* q, const double* v) 
   FindDriveMotion(time);
   ConstrainedMotion& motion = now_->motion;
   motion.SetVelocities(v, held_rates_.data());
-  if (now_->model.has_passive || prepared_.simulation.table_coordinate || !contacts_.empty()) {
-    now_->forces.FindJoints(&motion);
-    contacts_.SetSliding(&motion);
-  }
+  now_->forces.FindJointsThatCount(&motion);
+  contacts_.SetSliding(&motion);
   now_->forces.Evaluate(time, &motion);
   if (under_load_) return AccelerateUnderLoad();
   now_->forces.Apply(&motion);

@@ -37,6 +37,8 @@ class EquationsOfMotion {
   void TakeState(double time, const double* q, const double* v, const double* vdot);
   /// Pose, rates, and both of all joints. Steps go on from there.
   void Place(double time, const double* q, const double* v);
+  /// Steps go on from the pose that was last evaluated, or from one next to it.
+  void GoOnFromHere();
   /// Rates after an impact, in ws().v: held contacts stay, and those that hit are left.
   void Impact(double time, const double* q, const double* v,
               const std::vector<Contacts::Hit>& hits);

@@ -3,6 +3,7 @@
 #include <sunmatrix/sunmatrix_dense.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "vmech/dynamics/simulation/integrator.h"
@@ -60,6 +61,10 @@ class Cvodes : public Integrator {
   double time() const override { return time_; }
   const double* y() const override { return N_VGetArrayPointer(y_); }
   void At(double t, double* y) override {
+    if (t == time_) {
+      std::copy(this->y(), this->y() + problem_.size, y);
+      return;
+    }
     RequireSundials(CVodeGetDky(memory_, t, 0, wanted_) == 0);
     const double* at = N_VGetArrayPointer(wanted_);
     std::copy(at, at + problem_.size, y);
