@@ -21,7 +21,7 @@ ClosedWalk::ClosedWalk(const KinematicTree& tree, const std::vector<Bound>& boun
     : tree_(tree),
       bounds_(bounds),
       rank_(rank),
-      scale_(TangentScale(tree)),
+      scale_(VelocityScale(tree)),
       q_(std::move(q)),
       direction_(random->NormalVector(tree.nv)),
       random_(random) {}

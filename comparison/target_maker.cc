@@ -12,6 +12,7 @@
 #include "vmech/base/linear_algebra/linear_algebra.h"
 #include "vmech/kinematics/inverse/configuration_distance.h"
 #include "vmech/kinematics/loops/assembled_mechanism.h"
+#include "vmech/kinematics/loops/dimensionless_loops.h"
 #include "vmech/kinematics/loops/mobility.h"
 #include "vmech/kinematics/loops/unseen_motions.h"
 
@@ -211,7 +212,7 @@ MatrixXd Subject::GraspMotions(const VectorXd& q) {
   MatrixXd J(problem_.sizes().residuals, tree_.nv);
   problem_.SetTarget(problem_.GraspPose(q));
   problem_.Evaluate(q, nullptr, &J, nullptr, nullptr);
-  return J * TangentScale(tree_).asDiagonal() * FreeMotionBasis(tree_, q);
+  return J * VelocityScale(tree_).asDiagonal() * FreeMotionBasis(tree_, q);
 }
 
 double Subject::Determination(const VectorXd& q) {

@@ -32,6 +32,10 @@ void SimulatedMasterOptions::Validate() const {
   CheckRange("SimulatedMasterOptions", "stop_stiffness", stop_stiffness, 1e-9, 1e6);
   CheckRange("SimulatedMasterOptions", "stop_damping", stop_damping, 0, 1e4);
   CheckRange("SimulatedMasterOptions", "hand.mass", hand.mass, 0, 5);
+  CheckRange("SimulatedMasterOptions", "hand.stiffness", hand.stiffness, 0, 1e6);
+  CheckRange("SimulatedMasterOptions", "hand.damping", hand.damping, 0, 1e4);
+  CheckRange("SimulatedMasterOptions", "hand.angular_stiffness", hand.angular_stiffness, 0, 1e6);
+  CheckRange("SimulatedMasterOptions", "hand.angular_damping", hand.angular_damping, 0, 1e4);
   CheckRange("SimulatedMasterOptions", "gripper_damping", gripper_damping, 1e-6, 1e3);
 }
 

@@ -1,4 +1,5 @@
 #include "vmech/kinematics/inverse/configuration_distance.h"
+#include "vmech/kinematics/loops/dimensionless_loops.h"
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -49,19 +50,11 @@ void CoordinateDifference(const KinematicTree& tree, const VectorXd& a, const Ve
 VectorXd ConfigurationDifference(const KinematicTree& tree, const VectorXd& a, const VectorXd& b) {
   VectorXd difference = VectorXd::Zero(tree.nv);
   CoordinateDifference(tree, a, b, &difference);
-  return difference.cwiseQuotient(TangentScale(tree));
+  return difference.cwiseQuotient(VelocityScale(tree));
 }
 
 double ConfigurationDistance(const KinematicTree& tree, const VectorXd& a, const VectorXd& b) {
   return ConfigurationDifference(tree, a, b).norm();
-}
-
-VectorXd TangentScale(const KinematicTree& tree) {
-  VectorXd scale = VectorXd::Ones(tree.nv);
-  for (const TreeNode& node : tree.nodes) {
-    if (node.motion == NodeMotion::kPrismatic) scale[node.v] = tree.length;
-  }
-  return scale;
 }
 
 }  // namespace vmech

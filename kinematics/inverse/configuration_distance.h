@@ -15,8 +15,4 @@ VectorXd ConfigurationDifference(const KinematicTree& tree, const VectorXd& a, c
 /// tree, in radians (whole turns do not count) and characteristic lengths.
 double ConfigurationDistance(const KinematicTree& tree, const VectorXd& a, const VectorXd& b);
 
-/// Factors [nv] that turn a displacement in radians and characteristic lengths into radians and
-/// metres: the characteristic length [m] for translations, 1 for rotations.
-VectorXd TangentScale(const KinematicTree& tree);
-
 }  // namespace vmech

@@ -9,7 +9,7 @@
 
 #include "vmech/base/check_range.h"
 #include "vmech/base/linear_algebra/signed_elimination.h"
-#include "vmech/kinematics/inverse/configuration_distance.h"
+#include "vmech/kinematics/loops/dimensionless_loops.h"
 #include "vmech/kinematics/loops/unseen_motions.h"
 #include "vmech/kinematics/tree/validity.h"
 
@@ -36,7 +36,7 @@ constexpr double kClosingWeight = 1e3;
 /// The motions that neither hand nor loops see at q, orthonormal velocities [nv, count].
 MatrixXd UnseenVelocities(InverseKinematics* problem, const VectorXd& q) {
   const UnseenMotions unseen = FindUnseenMotions(problem, q);
-  MatrixXd velocities = TangentScale(problem->tree()).asDiagonal() * unseen.basis;
+  MatrixXd velocities = VelocityScale(problem->tree()).asDiagonal() * unseen.basis;
   Orthonormalise(velocities);
   return velocities;
 }

@@ -46,7 +46,7 @@ struct HandAndLoops {
     error << at_q.r, at_q.c;
     A.resize(error.size(), sizes.tangents);
     A << at_q.J, at_q.C;
-    A *= TangentScale(problem->tree()).asDiagonal();
+    A *= VelocityScale(problem->tree()).asDiagonal();
   }
 };
 
@@ -68,7 +68,7 @@ std::vector<VectorXd> ClosedNeighbours(const KinematicTree& tree, const VectorXd
     VectorXd way(Z.cols());
     for (int i = 0; i < way.size(); ++i) way[i] = std::sin(1.0 + k + 2.3 * i);
     VectorXd near = q;
-    MoveCoordinates(tree, kAway * TangentScale(tree).cwiseProduct(Z * way.normalized()), &near);
+    MoveCoordinates(tree, kAway * VelocityScale(tree).cwiseProduct(Z * way.normalized()), &near);
     if (Assemble(tree, {}, &near).closed) neighbours.push_back(std::move(near));
   }
   return neighbours;
@@ -140,7 +140,7 @@ class UnseenWalk {
   };
 
   void Move(const VectorXd& dimensionless, VectorXd* q) const {
-    MoveCoordinates(problem_.tree(), TangentScale(problem_.tree()).cwiseProduct(dimensionless), q);
+    MoveCoordinates(problem_.tree(), VelocityScale(problem_.tree()).cwiseProduct(dimensionless), q);
   }
 
   bool Close(VectorXd* q) {

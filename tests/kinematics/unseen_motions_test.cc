@@ -10,6 +10,7 @@
 #include "support/examples.h"
 #include "vmech/kinematics/inverse/assembly_modes.h"
 #include "vmech/kinematics/inverse/configuration_distance.h"
+#include "vmech/kinematics/loops/dimensionless_loops.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
 #include "vmech/solvers/optimality.h"
 
@@ -57,7 +58,7 @@ TEST(UnseenMotions, MoveNeitherTheGraspNorTheLoops) {
     Linearization at_q(held.problem.sizes());
     at_q.Evaluate(held.problem, held.q);
     const MatrixXd v =
-        TangentScale(held.tree).asDiagonal() * FindUnseenMotions(&held.problem, held.q).basis;
+        VelocityScale(held.tree).asDiagonal() * FindUnseenMotions(&held.problem, held.q).basis;
     EXPECT_LT((at_q.J * v).norm() + (at_q.C * v).norm(), 1e-10) << example;
   }
 }
@@ -135,7 +136,7 @@ TEST(ConfigurationDistance, IsReachedByTheDifferenceInAUnitOfTime) {
     const VectorXd a = RandomCoordinates(tree, &random, 1), b = RandomCoordinates(tree, &random, 1);
     const VectorXd difference = ConfigurationDifference(tree, a, b);
     VectorXd there = a;
-    MoveCoordinates(tree, TangentScale(tree).cwiseProduct(difference), &there);
+    MoveCoordinates(tree, VelocityScale(tree).cwiseProduct(difference), &there);
     EXPECT_LT(ConfigurationDistance(tree, there, b), kBack);
     EXPECT_NEAR(difference.norm(), ConfigurationDistance(tree, b, a), kBack);
   }
