@@ -146,7 +146,7 @@ void ReactionSolver<T>::AddToMatrix(const Vector6<T>* columns, const std::vector
 template <typename T>
 void ReactionSolver<T>::AddJacobianToMatrix(const TreeWorkspace<T>& ws) {
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
-    const Vector6<T>* C = &ws.loop_columns[ws.first_column[l]];
+    const Vector6<T>* C = ws.columns(l);
     for (const LoopColumn& c : tree_.loops[l].columns) {
       const int slot = partition_.dependent_slot[c.v];
       if (slot >= 0) {

@@ -94,6 +94,10 @@ class InverseKinematics final : public ConstrainedLeastSquares {
     Matrix3d G;
   };
 
+  /// Loops that are closed wherever the tree goes, as by the second hinge of a door or a second
+  /// guide beside a first: there is but rounding in their rows, which no solver must take for an
+  /// equation. Their weights W become zero.
+  void LeaveOutLoopsThatHoldAnyway();
   void MoveTo(const VectorXd& q);
   void EvaluateGrasp(VectorXd* r, MatrixXd* J);
   void EvaluateLoops(VectorXd* c, MatrixXd* C);
@@ -110,7 +114,7 @@ class InverseKinematics final : public ConstrainedLeastSquares {
   Vector6d K_;
   double energy_ = 1;
   Vector6d root_;       // (K/E)^(1/2)
-  VectorXd row_scale_;  // W
+  VectorXd row_scale_;  // W; zero for loops that hold anyway
   Posed X_WH_;
   Chain grasp_chain_;                       // from the ground to G
   std::vector<Chain> loop_chains_;          // from F to M, per loop

@@ -108,7 +108,7 @@ class PenaltyIteration {
       const auto scale = row_scale_.segment(loop.row, loop.rows).array();
       for (const LoopColumn& c : loop.columns) {
         const Eigen::Index k = std::ssize(block.columns);
-        const Vector6d& column = ws_.loop_columns[ws_.first_column[l] + k];
+        const Vector6d& column = ws_.columns(l)[k];
         block.A.col(k) = scale * column.head(loop.rows).array() * free_[c.v];
         block.columns.push_back(c.v);
       }

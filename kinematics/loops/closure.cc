@@ -62,7 +62,7 @@ void DependentSolver<T>::Factor(const TreeWorkspace<T>& ws) {
   normal_.SetZero();
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
     const std::vector<LoopColumn>& columns = tree_.loops[l].columns;
-    const Vector6<T>* C = &ws.loop_columns[ws.first_column[l]];
+    const Vector6<T>* C = ws.columns(l);
     for (size_t i = 0; i < columns.size(); ++i) {
       const int slot_i = partition_.dependent_slot[columns[i].v];
       if (slot_i < 0) continue;
@@ -107,7 +107,7 @@ void DependentSolver<T>::StartResidual(const TreeWorkspace<T>& ws, Target target
 template <typename T>
 void DependentSolver<T>::SubtractColumns(const TreeWorkspace<T>& ws, const T* x) {
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
-    const Vector6<T>* C = &ws.loop_columns[ws.first_column[l]];
+    const Vector6<T>* C = ws.columns(l);
     for (const LoopColumn& c : tree_.loops[l].columns) residual_[l] -= *C++ * x[c.v];
   }
 }
@@ -117,7 +117,7 @@ void DependentSolver<T>::SolveInto(const TreeWorkspace<T>& ws, T* x) {
   std::fill(solution_.begin(), solution_.end(), T(0));
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
     const Vector6<T> weighted = Weighted(weight_[l], residual_[l]);
-    const Vector6<T>* C = &ws.loop_columns[ws.first_column[l]];
+    const Vector6<T>* C = ws.columns(l);
     for (const LoopColumn& c : tree_.loops[l].columns) {
       const int slot = partition_.dependent_slot[c.v];
       if (slot >= 0) solution_[slot] += C->dot(weighted);

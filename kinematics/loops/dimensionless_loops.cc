@@ -36,8 +36,7 @@ RowBlock DimensionlessLoopRows(const KinematicTree& tree, const TreeWorkspace<do
     const double per_velocity = node.motion == NodeMotion::kPrismatic ? tree.length : 1;
     for (int i = 0; i < rows; ++i) {
       const double per_row = IsLengthRow(tree.loops[loop].type, i) ? 1 / tree.length : 1;
-      block.A(i, static_cast<Eigen::Index>(k)) =
-          per_row * ws.loop_columns[ws.first_column[loop] + k][i] * per_velocity;
+      block.A(i, static_cast<Eigen::Index>(k)) = per_row * ws.columns(loop)[k][i] * per_velocity;
     }
     block.columns.push_back(columns[k].v);
   }

@@ -110,7 +110,7 @@ bool LoopCloser::Close(double largest_misfit, WalkedPose* pose) {
   for (int step = 0; step < kClosingSteps; ++step) {
     const LoopEquations at = At(pose->q);
     const VectorXd dq = at.C.pseudo_inverse * at.e;
-    const double size = dq.cwiseAbs().maxCoeff();
+    const double size = dq.lpNorm<Eigen::Infinity>();
     way += size;
     if (!(way < kFurthestClosing)) return false;
     if (size > kSmallestStep) Move(dq, &pose->q);

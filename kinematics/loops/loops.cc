@@ -149,7 +149,7 @@ void LoopJacobian(const KinematicTree& tree, TreeWorkspace<T>* ws) {
   for (size_t l = 0; l < tree.loops.size(); ++l) {
     const Loop& loop = tree.loops[l];
     const LoopState<T>& s = ws->loops[l];
-    Vector6<T>* column = &ws->loop_columns[ws->first_column[l]];
+    Vector6<T>* column = ws->columns(l);
     for (const LoopColumn& c : loop.columns) {
       const ScrewT<T> S = c.sign * ws->S[c.v];
       for (int k = 0; k < loop.rows; ++k) (*column)[k] = Power(s.wrench[k], S);
@@ -219,7 +219,7 @@ MatrixXd DenseLoopJacobian(const KinematicTree& tree, const TreeWorkspace<double
   MatrixXd C = MatrixXd::Zero(tree.rows, tree.nv);
   for (size_t l = 0; l < tree.loops.size(); ++l) {
     const Loop& loop = tree.loops[l];
-    const Vector6d* column = &ws.loop_columns[ws.first_column[l]];
+    const Vector6d* column = ws.columns(l);
     for (const LoopColumn& c : loop.columns) {
       C.block(loop.row, c.v, loop.rows, 1) = (column++)->head(loop.rows);
     }

@@ -64,6 +64,10 @@ struct TreeWorkspace {
 
   const Node& at(int node) const { return nodes[node + 1]; }  ///< of the tree; -1 is the ground
   Node& at(int node) { return nodes[node + 1]; }              ///< of the tree; -1 is the ground
+
+  /// Where the columns of a loop begin; a loop between links that are one piece has none.
+  const Vector6<T>* columns(size_t loop) const { return loop_columns.data() + first_column[loop]; }
+  Vector6<T>* columns(size_t loop) { return loop_columns.data() + first_column[loop]; }
 };
 
 }  // namespace vmech

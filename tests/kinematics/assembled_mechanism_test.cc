@@ -181,6 +181,23 @@ TEST(AssembledMechanism, SaysWhoStartsOutsideItsLimits) {
   EXPECT_NE(outside[0].find("joint 'A' starts at"), std::string::npos);
 }
 
+// A loop between parts that are welded to each other has rows and no columns.
+TEST(AssembledMechanism, ClosesALoopThatNothingCanMove) {
+  const AssembledMechanism assembled = AssembleMechanism(ParseMechanism(R"(vmech: "1.0"
+gravity: [0, 0, -9.81]
+ground: frame
+links:
+  frame: {anchors: {a: {origin: [0, 0, 0]}, b: {origin: [1, 0, 0]}}}
+  plate: {mass: 1, anchors: {a: {origin: [0, 0, 0]}, b: {origin: [1, 0, 0]}}}
+joints:
+  weld: {type: weld, connects: [frame/a, plate/a]}
+  ball: {type: spherical, connects: [frame/b, plate/b]}
+)",
+                                                                        "welded"));
+  EXPECT_TRUE(assembled.summary.closed) << assembled.summary.message;
+  EXPECT_EQ(MobilityOf(assembled), 0);
+}
+
 // Rounding tells from a small eccentric: what moves as drawn is taken as drawn.
 TEST(AssembledMechanism, TakesNoSmallEccentricForRounding) {
   std::string eccentric = kFlat;

@@ -233,5 +233,27 @@ TEST(InverseKinematics, UnequalRotationalWeightsNeedTheExactDerivative) {
   EXPECT_GT(energy(-kStep), here);
 }
 
+// Drawn askew, the rows of the second hinge are rounding instead of zeros: no equation either.
+TEST(Door, TurnsOnItsTwoHingesHoweverTheyLie) {
+  for (const double angle : {0.0, 0.4, 1.1, 1.9, 2.6}) {
+    Mechanism door = Example("door-on-two-hinges");
+    const Posed askew(Eigen::AngleAxisd(angle, Vector3d(2, -1, 2) / 3).toRotationMatrix(),
+                      Vector3d(0.3, -angle, 0.7));
+    for (Link& link : door.links) {
+      for (Anchor& anchor : link.anchors) anchor.X_LA = askew * anchor.X_LA;
+    }
+    door.grasps[0].X_LG = askew * door.grasps[0].X_LG;
+    const KinematicTree tree = BuildKinematicTree(door);
+    InverseKinematics problem(tree, GraspFrameOf(tree, 0));
+    const VectorXd start = StartCoordinates(tree), open = start.array() + 0.5;
+    problem.SetTarget(problem.GraspPose(open));
+    for (const Backend backend : {Backend::kNullspace, Backend::kAugmentedLagrangian}) {
+      const Summary summary = Solve(backend, problem, kTight, start);
+      EXPECT_TRUE(summary.converged()) << summary.BriefReport();
+      EXPECT_NEAR(summary.x[0], open[0], 1e-9) << angle << ' ' << NameOf(backend);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace vmech

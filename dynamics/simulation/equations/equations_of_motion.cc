@@ -289,7 +289,7 @@ double EquationsOfMotion::RateDrift(const double* v) const {
   double largest = 0;
   for (size_t l = 0; l < tree_.loops.size(); ++l) {
     const Loop& loop = tree_.loops[l];
-    const Vector6d* column = &ws.loop_columns[ws.first_column[l]];
+    const Vector6d* column = ws.columns(l);
     Vector6d rates = Vector6d::Zero();
     for (const LoopColumn& c : loop.columns) rates += *column++ * v[c.v];
     for (int i = 0; i < loop.rows; ++i) {
