@@ -217,6 +217,7 @@ Rendering MakePaper(const RenderingRequest& request, const KinematicTree& tree,
   SessionPromise promise{true, true, options.scale, 1, {}};
   promise.coupling.stiffness = options.law.stiffness / options.scale;
   promise.coupling.damping = options.law.damping / options.scale;
+  promise.roll_off = options.LagOfInertia();
   if (tree.mechanism.grasps[grasp].kind == GraspKind::kPoint) {
     promise.coupling.stiffness.tail<3>().setZero();
     promise.coupling.damping.tail<3>().setZero();

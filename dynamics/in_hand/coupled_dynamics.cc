@@ -207,26 +207,17 @@ void CoupledDynamics::Fade() noexcept {
   }
 }
 
-/// Velocities at the end of the step, and the couplings' wrenches. Each that turns out too large is
-/// given at its largest from then on, so that the mechanism gets what the hands pay for.
+/// Velocities at the end of the step, and the couplings' wrenches. What of these turns out too
+/// large is given at its largest from then on, so that the mechanism gets what the hands pay for.
 bool CoupledDynamics::SolveStep() noexcept {
-  // Where one slips, a rough velocity tells in which direction.
-  const Solving first = slipping() ? Solving::kRoughly : Solving::kFully;
-  for (Hand& hand : hands_) hand.slips = false;
-  BuildSystem();
-  AddCouplings();
-  if (!SolveWithLimits(first)) return false;
-  bool slips = Slip();
-  if (!slips && first == Solving::kRoughly) {
-    if (!SolveWithLimits(Solving::kFully)) return false;
-    slips = Slip();
+  for (int i = 0; i < hands(); ++i) {
+    if (hands_[i].coupled) hands_[i].coupling.Foresee(pose_.Twist(v_, i));
   }
-  while (slips) {
+  do {
     BuildSystem();
     AddCouplings();
-    if (!SolveWithLimits(Solving::kFully)) return false;
-    slips = Slip();
-  }
+    if (!SolveWithLimits()) return false;
+  } while (Slip());
   return true;
 }
 
@@ -248,10 +239,8 @@ void CoupledDynamics::BuildSystem() noexcept {
 void CoupledDynamics::AddCouplings() noexcept {
   for (int i = 0; i < hands(); ++i) {
     const Hand& hand = hands_[i];
-    if (hand.slips) {
-      pose_.AddForces(hand.coupling.w(), &right_, i);
-    } else if (hand.coupled) {
-      pose_.ComputeWeightedJacobian(hand.coupling.root_gain(), &rootKJ_, i);
+    if (hand.coupled) {
+      pose_.ComputeWeightedJacobian(hand.coupling.RootGain(), &rootKJ_, i);
       system_.AddGram(rootKJ_, &A_);
       pose_.AddForces(hand.coupling.Given(), &right_, i);
     }
@@ -259,29 +248,27 @@ void CoupledDynamics::AddCouplings() noexcept {
   }
 }
 
-/// The couplings' wrenches at the end of the step. True if one more slips.
+/// The couplings' wrenches at the end of the step. True if more of them slips.
 bool CoupledDynamics::Slip() noexcept {
   bool more = false;
   for (int i = 0; i < hands(); ++i) {
     Hand& hand = hands_[i];
-    if (!hand.coupled || hand.slips) continue;
-    hand.slips = hand.coupling.Pull(pose_.Twist(next_v_, i));
-    more = more || hand.slips;
+    if (hand.coupled && hand.coupling.Pull(pose_.Twist(next_v_, i))) more = true;
   }
   return more;
 }
 
 /// Velocities with the joints' limits; those that held last are tried first.
-bool CoupledDynamics::SolveWithLimits(Solving how) noexcept {
+bool CoupledDynamics::SolveWithLimits() noexcept {
   for (int i = 0; i < kContactChanges; ++i) {
-    if (!SolveVelocity(how)) return false;
+    if (!SolveVelocity()) return false;
     if (!passive_.ChangeLimits(q_, next_v_, T_)) break;
   }
   return true;
 }
 
 /// (A + limits) v+ + C' mu = right, C v+ = d.
-bool CoupledDynamics::SolveVelocity(Solving how) noexcept {
+bool CoupledDynamics::SolveVelocity() noexcept {
   const bool limited = passive_.at_limit();
   if (limited) {
     limited_A_ = A_;
@@ -291,11 +278,7 @@ bool CoupledDynamics::SolveVelocity(Solving how) noexcept {
   const MatrixXd& A = limited ? limited_A_ : A_;
   const VectorXd& right = limited ? limited_right_ : right_;
   if (!system_.Factor(A)) return false;
-  if (how == Solving::kRoughly) {
-    system_.SolveOnce(pose_.C(), right, d_, &next_v_);
-  } else {
-    system_.Solve(A, pose_.C(), right, d_, &next_v_);
-  }
+  system_.Solve(A, pose_.C(), right, d_, &next_v_);
   return std::isfinite(SquaredSpeed(next_v_));
 }
 
@@ -345,8 +328,8 @@ void CoupledDynamics::UpdateVelocities() noexcept {
 /// What the step has gained beyond the dampers' work at most.
 void CoupledDynamics::LimitEnergyGain(double before) noexcept {
   double gained = Energy() - before;
-  for (int i = 0; i < hands(); ++i) {
-    if (hands_[i].coupled) gained -= hands_[i].coupling.Dragged(pose_.Twist(v_, i));
+  for (const Hand& hand : hands_) {
+    if (hand.coupled) gained -= hand.coupling.dragged();
   }
   const double factor = energy_limit_.FactorOfVelocities(gained, kinetic_);
   if (factor == 1) return;

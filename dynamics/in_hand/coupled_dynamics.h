@@ -112,6 +112,9 @@ class CoupledDynamics {
   const std::vector<Wrenchd>& joints() const noexcept { return joints_; }
   /// Kinetic energy, weight, springs of joints and couplings [J].
   double Energy() const noexcept;
+  /// What steps have lost and later ones may give back [J]: at most a twentieth of the kinetic
+  /// energy. With it, the energy grows by the hands' work alone.
+  double RememberedLosses() const noexcept { return energy_limit_.remembered(); }
   /// Energy of a hand's spring, and of what fades of it [J].
   double CouplingEnergy(int hand = 0) const noexcept {
     return hands_[hand].coupling.energy() + hands_[hand].fading.energy();
@@ -121,13 +124,11 @@ class CoupledDynamics {
   bool slipping() const noexcept;  ///< a coupling is at its largest wrench
 
  private:
-  enum class Solving { kFully, kRoughly };
   struct Hand {
     VirtualCoupling coupling;
     FadingWrench fading;
     MovingFrame at;
     bool coupled = true;
-    bool slips = false;  // in this step: its wrench is given
   };
 
   void AddRegularisation();
@@ -136,8 +137,8 @@ class CoupledDynamics {
   void AddCouplings() noexcept;
   void Fade() noexcept;
   bool SolveStep() noexcept;
-  bool SolveWithLimits(Solving how) noexcept;
-  bool SolveVelocity(Solving how) noexcept;
+  bool SolveWithLimits() noexcept;
+  bool SolveVelocity() noexcept;
   bool Slip() noexcept;
   void FindWrenches() noexcept;
   CoupledStatus Move() noexcept;

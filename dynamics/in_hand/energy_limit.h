@@ -22,6 +22,7 @@ class EnergyLimit {
   /// The next step has to make up for this much too [J].
   void Owe(double energy) noexcept { lost_ -= energy; }
   void Forget() noexcept { lost_ = 0; }  ///< what was lost or owed before does not count
+  double remembered() const noexcept { return std::max(0.0, lost_); }  ///< losses [J]
 
  private:
   double lost_ = 0;  // energy that steps may give back [J]

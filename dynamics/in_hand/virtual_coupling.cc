@@ -49,6 +49,7 @@ VirtualCoupling::VirtualCoupling(const HandCoupling& coupling, GraspKind kind, d
   stiffness_ = ScrewOf(checked.stiffness);
   damping_ = ScrewOf(checked.damping);
   root_gain_ = ScrewOf((checked.damping + step * checked.stiffness).cwiseSqrt());
+  root_damping_ = ScrewOf(checked.damping.cwiseSqrt());
 }
 
 void VirtualCoupling::Stretch(const Frame& X_WG, const MovingFrame& hand) noexcept {
@@ -61,6 +62,7 @@ void VirtualCoupling::Stretch(const Frame& X_WG, const MovingFrame& hand) noexce
   constexpr double kNone = std::numeric_limits<double>::infinity();
   slipped_.force = Length(pull.linear) > allowed.force ? allowed.force : kNone;
   slipped_.moment = Length(pull.angular) > allowed.moment ? allowed.moment : kNone;
+  force_slips_ = moment_slips_ = all_slips_ = false;
 }
 
 /// The largest force and moment of a pull that may be too large.
@@ -74,27 +76,60 @@ WrenchLimit VirtualCoupling::Allowed(const Screw& pull) const noexcept {
   return share < 1 ? WrenchLimit{share * f, share * m} : allowed;
 }
 
+void VirtualCoupling::Foresee(const Screw& V_WG) noexcept {
+  if (slipping_) PullSpring(V_WG);
+}
+
+Screw VirtualCoupling::RootGain() const noexcept {
+  if (all_slips_) return {};
+  return {force_slips_ ? root_damping_.linear : root_gain_.linear,
+          moment_slips_ ? root_damping_.angular : root_gain_.angular};
+}
+
 Screw VirtualCoupling::Given() const noexcept {
-  return Scaled(stiffness_, e1_) + Scaled(damping_, V_WH_);
+  if (all_slips_) return w_;
+  const Screw spring = Scaled(stiffness_, e1_);
+  return Screw{force_slips_ ? spring_.linear : spring.linear,
+               moment_slips_ ? spring_.angular : spring.angular} +
+         Scaled(damping_, V_WH_);
+}
+
+/// The spring's pull, shortened where it slips. True if it is one more part that does.
+bool VirtualCoupling::PullSpring(const Screw& V_WG) noexcept {
+  Screw spring = Scaled(stiffness_, e1_ - T_ * V_WG);
+  const WrenchLimit allowed = Allowed(spring);
+  const bool force = Shorten(allowed.force, &spring.linear) && !force_slips_;
+  const bool moment = Shorten(allowed.moment, &spring.angular) && !moment_slips_;
+  if (!force_slips_) spring_.linear = spring.linear;
+  if (!moment_slips_) spring_.angular = spring.angular;
+  force_slips_ = force_slips_ || force;
+  moment_slips_ = moment_slips_ || moment;
+  return force || moment;
 }
 
 bool VirtualCoupling::Pull(const Screw& V_WG) noexcept {
-  w_ = Scaled(stiffness_, e1_ - T_ * V_WG) + Scaled(damping_, V_WH_ - V_WG);
+  const bool more = !all_slips_ && PullAll(V_WG);
+  dragged_ = std::max(0.0, T_ * Power(w_ - spring_, V_WG));
+  return more;
+}
+
+bool VirtualCoupling::PullAll(const Screw& V_WG) noexcept {
+  bool more = PullSpring(V_WG);
+  w_ = spring_ + Scaled(damping_, V_WH_ - V_WG);
   const WrenchLimit allowed = Allowed(w_);
-  const bool force_slips = Shorten(allowed.force, &w_.linear);
-  const bool moment_slips = Shorten(allowed.moment, &w_.angular);
-  return slipping_ = force_slips || moment_slips;
+  const bool force = Shorten(allowed.force, &w_.linear);
+  const bool moment = Shorten(allowed.moment, &w_.angular);
+  // What is too large while the spring is not yet known may be within its limit afterwards.
+  if (!more) more = all_slips_ = force || moment;
+  slipping_ = force_slips_ || moment_slips_ || force || moment;
+  return more;
 }
 
 void VirtualCoupling::LetGo() noexcept {
-  w_ = {};
-  energy_ = 0;
+  spring_ = w_ = {};
+  energy_ = dragged_ = 0;
   slipped_ = {};
   slipping_ = false;
-}
-
-double VirtualCoupling::Dragged(const Screw& V_WG) const noexcept {
-  return std::max(0.0, T_ * Power(Scaled(damping_, V_WH_ - V_WG), V_WG));
 }
 
 }  // namespace vmech

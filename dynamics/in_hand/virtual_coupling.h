@@ -19,9 +19,11 @@ struct HandCoupling {
 
 /// A HandCoupling at work, taken at the end of steps of T:
 ///
-///   w = K (e1 - T V_G) + B (V_H - V_G),
+///   w = | |K (e1 - T V_G)| + B (V_H - V_G) |,
 ///
-/// e1 the hand's error at the start, V_H and V_G the twists of hand and grasp at the end.
+/// e1 the hand's error at the start, V_H and V_G the twists of hand and grasp at the end, bars for
+/// what is shortened to the largest force and moment: a spring that slips pulls no harder, and what
+/// comes back to the hand meanwhile is braked by the whole damper before the spring takes hold.
 class VirtualCoupling {
  public:
   /// Rotational rows do not count for a point grasp. @throws std::invalid_argument if a gain is out
@@ -37,11 +39,14 @@ class VirtualCoupling {
   void Within(const WrenchLimit& room) noexcept { room_ = room; }
 
   const Screw& stiffness() const noexcept { return stiffness_; }  ///< K
-  const Screw& root_gain() const noexcept { return root_gain_; }  ///< (B + T K)^1/2
-  /// K e1 + B V_H: what does not depend on the motion to come.
-  Screw Given() const noexcept;
-  /// Finds w for the grasp's twist at the end of the step. True if it is larger than it may be;
-  /// then it is shortened to that.
+  /// Before a step, with the grasp's twist as it is: a spring that has slipped goes on with it if
+  /// it will be too long.
+  void Foresee(const Screw& V_WG) noexcept;
+  /// G^1/2, w = Given - G V_G: B + T K, of a spring that slips B, and nothing where w is given.
+  Screw RootGain() const noexcept;
+  Screw Given() const noexcept;  ///< what does not depend on the motion to come
+  /// Finds w for the grasp's twist at the end of the step. True if spring or w turn out too large;
+  /// then Given and RootGain are those of what slips from now on, until the next Stretch.
   bool Pull(const Screw& V_WG) noexcept;
   void LetGo() noexcept;  ///< nothing pulls until the next Pull
 
@@ -52,18 +57,22 @@ class VirtualCoupling {
   /// True while the wrench is the largest that is allowed: the spring then stretches no further.
   bool slipping() const noexcept { return slipping_; }
   double energy() const noexcept { return energy_; }  ///< of the spring [J]
-  /// The most that the damper can give the mechanism in a step at its twist [J].
-  double Dragged(const Screw& V_WG) const noexcept;
+  /// What the damper gave the mechanism in the step [J]; 0 where it took.
+  double dragged() const noexcept { return dragged_; }
 
  private:
   WrenchLimit Allowed(const Screw& pull) const noexcept;
+  bool PullSpring(const Screw& V_WG) noexcept;
+  bool PullAll(const Screw& V_WG) noexcept;
 
-  Screw stiffness_, damping_, root_gain_;
+  Screw stiffness_, damping_, root_gain_, root_damping_;
   WrenchLimit most_, room_;
   WrenchLimit slipped_;  // at what the spring slipped last; no limit where it did not
   double T_;
-  Screw V_WH_, e1_, w_;
-  double energy_ = 0;
+  Screw V_WH_, e1_, spring_, w_;
+  double energy_ = 0, dragged_ = 0;
+  // In this step: the spring's force and moment, and w itself, are given.
+  bool force_slips_ = false, moment_slips_ = false, all_slips_ = false;
   bool slipping_ = false;
 };
 

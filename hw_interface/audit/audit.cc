@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "vmech/base/rotation_error.h"
@@ -34,9 +35,10 @@ struct MechanismState {
     SetGravity(tree.mechanism.gravity_W, &ws);
   }
 
-  void Set(const KinematicTree& tree, const TickPicture& picture) {
-    ForwardKinematics(tree, picture.q.data(), &ws);
-    ForwardVelocities(tree, picture.v.data(), &ws);
+  /// `v`: the velocity of its inertia.
+  void Set(const KinematicTree& tree, const VectorXd& q, const VectorXd& v) {
+    ForwardKinematics(tree, q.data(), &ws);
+    ForwardVelocities(tree, v.data(), &ws);
     LoopErrors(tree, &ws);
     BodyInertias(tree, ws, &inertias);
     JointFrames(tree, ws, &joints);
@@ -73,6 +75,12 @@ class Judgement {
   AuditFinding finding_;
 };
 
+/// -1: the recording has none of this name.
+int ChannelOf(const RecordingHeader& header, std::string_view name) {
+  const auto found = std::find(header.channels.begin(), header.channels.end(), name);
+  return found == header.channels.end() ? -1 : static_cast<int>(found - header.channels.begin());
+}
+
 double Distance(const Posed& A, const Posed& B) {
   return HandError(A, B).cwiseAbs().maxCoeff();
 }
@@ -106,6 +114,10 @@ struct RecordingAudit::Parts {
         before(held.tree),
         now(held.tree),
         net(held.tree.nodes.size() + 1),
+        u(VectorXd::Zero(held.tree.nv)),
+        felt_v(u),
+        share_channel(ChannelOf(header, "inertia_share")),
+        losses_channel(ChannelOf(header, "remembered_losses")),
         loops("loops of the mechanism, closed to", held.tree.mechanism.tolerance, "-"),
         grasp("grasp frame from the coordinates, off by", kExact, "m, rad"),
         hand("hand in the world from the sample, off by", kExact, "m, rad"),
@@ -125,19 +137,22 @@ struct RecordingAudit::Parts {
   struct Hand {
     GraspFrame grasp;
     VirtualCoupling coupling;
-    Posed X_WG_before;
+    Posed X_WG_before, X_WH_before;
+    Vector6d dynamic_before = Vector6d::Zero();
     bool held = false;  // once
     bool let_go = false;
     bool late = false;  // it has closed on a link that moved, and its frame slid along
   };
 
   void Take(const TickRecord& tick);
+  const VectorXd& VelocityOfInertia(const TickRecord& tick);
   void JudgePose(const TickRecord& tick);
   void JudgeStoredEnergy(const TickRecord& tick);
   void JudgeWrenches(const TickRecord& tick);
   void JudgeJoints(const TickRecord& tick);
   double AlongCutFreedoms(int joint, const Wrenchd& w) const;
   void JudgeLinks(const TickRecord& tick, const MechanismState& at);
+  double WorkOf(const Hand& hand, const HandPicture& picture) const;
   void Balance(const TickRecord& tick);
 
   RecordedTree held;
@@ -149,6 +164,10 @@ struct RecordingAudit::Parts {
   std::vector<Screw> net;  // on every node; node i at i + 1
   Judgement loops, grasp, hand, stored, wanted, sent, free, newton;
   EnergyBalance energy;
+  // In the paper's way:
+  VectorXd u, felt_v;  // behind the roll-off; of the inertia that is felt
+  MasterState last_sample;
+  int share_channel, losses_channel;
   double joint_work = 0;  // of this tick [J]
   double first_kinetic = 0, first_weight = 0;
   double largest_force = 0;
@@ -173,7 +192,7 @@ void RecordingAudit::Parts::Take(const TickRecord& tick) {
     hands[i].late = hands[i].late || (started && holds && !hands[i].held);
     hands[i].held = hands[i].held || holds;
   }
-  now.Set(held.tree, tick.picture);
+  now.Set(held.tree, tick.picture.q, promise.paper ? VelocityOfInertia(tick) : tick.picture.v);
   JudgePose(tick);
   JudgeStoredEnergy(tick);
   JudgeWrenches(tick);
@@ -186,10 +205,26 @@ void RecordingAudit::Parts::Take(const TickRecord& tick) {
   }
   started = true;
   for (size_t i = 0; i < hands.size(); ++i) {
-    hands[i].X_WG_before = tick.picture.hand(static_cast<int>(i)).X_WG;
+    const HandPicture& picture = tick.picture.hand(static_cast<int>(i));
+    hands[i].X_WG_before = picture.X_WG;
+    hands[i].X_WH_before = picture.X_WH;
+    hands[i].dynamic_before = picture.dynamic;
   }
   std::swap(before, now);
   ++ticks;
+}
+
+/// s^1/2 u, with the share s that was felt and u behind the roll-off, as MechanismTick finds them.
+const VectorXd& RecordingAudit::Parts::VelocityOfInertia(const TickRecord& tick) {
+  if (tick.io != IoStatus::kOk) return felt_v;
+  const double periods = started ? PeriodsBetween(last_sample, tick.state, period) : 1;
+  const double elapsed = period * std::max(1.0, std::round(periods));
+  last_sample = tick.state;
+  u += elapsed / (promise.roll_off + elapsed) * (tick.picture.v - u);
+  const double share =
+      share_channel < 0 ? promise.inertia : tick.channels[static_cast<size_t>(share_channel)];
+  felt_v = std::sqrt(share) * u;
+  return felt_v;
 }
 
 void RecordingAudit::Parts::JudgePose(const TickRecord& tick) {
@@ -208,9 +243,9 @@ void RecordingAudit::Parts::JudgePose(const TickRecord& tick) {
   }
 }
 
-/// That of the virtual coupling, whose spring remembers where it slips; of several hands the sum of
-/// what they have stored, as long as none has let go. In the paper's way the share of the inertia
-/// goes with the pose, and the recording does not have it.
+/// That of the virtual coupling, whose spring remembers where it slips, with what steps have lost
+/// and may give back; of several hands the sum of what they have stored, as long as none has let
+/// go.
 void RecordingAudit::Parts::JudgeStoredEnergy(const TickRecord& tick) {
   if (!promise.known || promise.paper || held.regrasps) return;
   double own = now.kinetic + now.weight + passive.Energy(tick.picture.q), told = 0;
@@ -229,6 +264,7 @@ void RecordingAudit::Parts::JudgeStoredEnergy(const TickRecord& tick) {
     own += hand.coupling.energy();
   }
   own *= promise.scale;
+  if (losses_channel >= 0) own += tick.channels[static_cast<size_t>(losses_channel)];
   const double size = std::abs(now.kinetic) + std::abs(now.weight) + std::abs(own);
   if (all_hold) stored.Add(std::abs(own - told) / std::max(size, 1e-6), ticks);
 }
@@ -330,16 +366,23 @@ void RecordingAudit::Parts::JudgeLinks(const TickRecord& tick, const MechanismSt
   newton.Add(most / std::max(largest_force, 1e-3), ticks);
 }
 
+/// Of a hand on the mechanism since the last tick. The virtual coupling pulls at the grasp, in a
+/// step with the wrench of its end. In the paper's way w_d is felt at the hand beside the grasp,
+/// and its work there is what the mechanism gets: by the mean of w_d at both ends of the way.
+double RecordingAudit::Parts::WorkOf(const Hand& hand, const HandPicture& picture) const {
+  if (!promise.paper) return picture.dynamic.dot(HandError(hand.X_WG_before, picture.X_WG));
+  const Vector6d way = HandError(hand.X_WH_before, picture.X_WH);
+  return 0.5 * (hand.dynamic_before + picture.dynamic).dot(way);
+}
+
 void RecordingAudit::Parts::Balance(const TickRecord& tick) {
   for (size_t i = 0; i < hands.size(); ++i) {
-    const HandPicture& picture = tick.picture.hand(static_cast<int>(i));
-    const double work = picture.dynamic.dot(HandError(hands[i].X_WG_before, picture.X_WG));
+    const double work = WorkOf(hands[i], tick.picture.hand(static_cast<int>(i)));
     energy.hand += work;
     energy.throughput += std::abs(work);
   }
   energy.joints -= joint_work;
-  const double share = promise.paper ? promise.inertia : 1;
-  energy.kinetic = share * (now.kinetic - first_kinetic);
+  energy.kinetic = now.kinetic - first_kinetic;
   energy.weight = now.weight - first_weight;
   energy.lost = energy.hand - energy.kinetic - energy.weight - energy.joints;
   energy.gained = std::max(energy.gained, -energy.lost);
@@ -384,12 +427,12 @@ AuditReport RecordingAudit::Report() const {
   }
   if (p.promise.paper) {
     report.left_out =
-        "energies and links: in the paper's way the place of the hand moves the mechanism, no "
+        "stored energy and links: in the paper's way the place of the hand moves the mechanism, no "
         "force";
-    return report;
+  } else {
+    if (p.promise.known) report.findings.push_back(p.stored.finding());
+    report.findings.push_back(p.newton.finding());
   }
-  if (p.promise.known) report.findings.push_back(p.stored.finding());
-  report.findings.push_back(p.newton.finding());
   const double share = p.energy.gained / std::max(p.energy.throughput, 1e-6);
   report.findings.push_back(
       {"energy from nowhere, share of the hand's work", share, kEnergyGain, "-", p.ticks});

@@ -21,6 +21,7 @@ RecordingNotes NotesOf(const SessionPromise& promise, int hand) {
   const HandCoupling& coupling = promise.coupling;
   RecordingNotes notes{{"felt_scale", fmt::to_string(promise.scale)},
                        {"felt_inertia", fmt::to_string(promise.inertia)},
+                       {"felt_roll_off", fmt::to_string(promise.roll_off)},
                        {"felt_max_force", fmt::to_string(coupling.max_force)},
                        {"felt_max_moment", fmt::to_string(coupling.max_moment)}};
   for (const auto& [key, row] : kRows) {
@@ -41,6 +42,7 @@ SessionPromise PromiseOf(const RecordingHeader& header, int hand) {
   promise.known = !header.Note(RecordingHeader::KeyOf("felt_scale", hand)).empty();
   promise.scale = number("felt_scale", 1);
   promise.inertia = number("felt_inertia", 1);
+  promise.roll_off = number("felt_roll_off", 0);
   HandCoupling& coupling = promise.coupling;
   coupling.max_force = number("felt_max_force", coupling.max_force);
   coupling.max_moment = number("felt_max_moment", coupling.max_moment);

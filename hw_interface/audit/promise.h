@@ -12,6 +12,7 @@ struct SessionPromise {
   double scale = 1;       ///< force at the hand over force at the mechanism
   double inertia = 1;     ///< share of the mechanism's inertia
   HandCoupling coupling;  ///< at the mechanism: of the spring, or of the paper's constraint
+  double roll_off = 0;    ///< of the acceleration in the paper's way [s]; 0: none
 };
 
 /// As notes of a recording; of the hand, counted from 0.

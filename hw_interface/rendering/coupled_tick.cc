@@ -89,6 +89,7 @@ std::vector<std::string> CoupledTick::ChannelNames() const {
     for (int k = 0; k < kHandChannels; ++k) names.push_back(fmt::format("{}_{}", names[k], i + 1));
   }
   names.emplace_back("state");
+  names.emplace_back("remembered_losses");
   peaks_.AppendNames(&names);
   return names;
 }
@@ -255,7 +256,8 @@ void CoupledTick::Account(CoupledStatus status, std::span<double> channels) noex
   const std::span<double> rest = channels.subspan(hands() * kHandChannels);
   rest[0] = static_cast<double>(dynamics_.slipping() + 2 * dynamics_.at_limit() +
                                 4 * (status == CoupledStatus::kStopped));
-  peaks_.Add(dynamics_.joints(), rest.subspan(1));
+  rest[1] = options_.scale * dynamics_.RememberedLosses();
+  peaks_.Add(dynamics_.joints(), rest.subspan(2));
   ++summary_.ticks;
   summary_.at_limit += dynamics_.at_limit();
   summary_.slipping += dynamics_.slipping();

@@ -116,7 +116,10 @@ class CoupledTick : public Tick {
   void ReadHand(const TickInput& input, Hand* hand) noexcept;
   CoupledStatus Move() noexcept;
   void ShareEnergy(std::span<const TickInput> inputs) noexcept;
-  double EnergyOfHands() const noexcept { return dynamics_.Energy() - dynamics_.design_work(); }
+  /// What a step has lost and a later one gives back is no debt of the hand's in between.
+  double EnergyOfHands() const noexcept {
+    return dynamics_.Energy() + dynamics_.RememberedLosses() - dynamics_.design_work();
+  }
   double StoredEnergy(bool held, int i) noexcept;
   void Account(CoupledStatus status, std::span<double> channels) noexcept;
 

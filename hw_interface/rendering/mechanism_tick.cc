@@ -68,6 +68,10 @@ double ShareWithin(const Vector6d& w, double max_force, double max_moment) {
 
 }  // namespace
 
+double MechanismTickOptions::LagOfInertia() const {
+  return FindsAccelerations(estimator.kind) ? 0 : roll_off;
+}
+
 void MechanismTickOptions::Validate() const {
   const char* const name = "MechanismTickOptions";
   CheckRange(name, "scale", scale, 1e-6, 1e3);
@@ -135,7 +139,7 @@ std::vector<std::string> MechanismTick::StateNames() const {
 
 void MechanismTick::Show(TickPicture* picture) const noexcept {
   picture->q = tracker_.q();
-  picture->v = dynamics_.v();
+  picture->v = v_;
   picture->joints = dynamics_.joints();
   picture->X_WH = X_WH_;
   picture->X_WG = X_WG_;

@@ -46,6 +46,9 @@ struct MechanismTickOptions {
   TrackOptions track;
 
   MechanismTickOptions() { track.steps = 2; }
+  /// By what the inertia lags behind the mechanism's velocity [s]: `roll_off`, or 0 where the
+  /// estimator finds accelerations itself.
+  double LagOfInertia() const;
 
   /// @throws std::invalid_argument naming field, value and range.
   void Validate() const;

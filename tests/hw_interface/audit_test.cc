@@ -108,6 +108,7 @@ class Session {
     observer_ = choice.observer;
     promise = {true, true, options.scale, options.inertia, {}};
     promise.coupling.stiffness = options.law.stiffness / options.scale;
+    promise.roll_off = options.LagOfInertia();
     tick_ = [this, options]() -> std::unique_ptr<Tick> {
       return std::make_unique<MechanismTick>(tree_, grasp_, q_, master_.info(), options);
     };

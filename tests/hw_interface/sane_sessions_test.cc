@@ -118,15 +118,15 @@ TEST_P(SaneSessions, HardlyEverTrip) {
 
 /// Three freedoms of 8 N, with steps of a hundredth of a millimetre, and a hand that swings by 2 cm
 /// whatever the mechanism allows.
-PointOptions SmallDevice() {
+PointOptions SmallDevice(Grip grip) {
   PointOptions device;
   device.mass = 0.3;
   device.damping = 1;
   device.resolution = 1e-5;
   device.peak = 8;
   device.forces_alone = true;
-  device.hand_stiffness = 200;
-  device.hand_damping = 6;
+  device.hand_stiffness = ImpedanceOf(grip).stiffness;
+  device.hand_damping = ImpedanceOf(grip).damping;
   device.reach = 0.02;
   device.hertz = 0.6;
   return device;
@@ -156,17 +156,17 @@ std::vector<std::string> HeldBySmallDevices() {
 
 class SmallDevices : public testing::TestWithParam<std::string> {};
 
-TEST_P(SmallDevices, HoldEveryExampleAtAPointWithoutAJump) {
-  Mechanism mechanism = Example(GetParam());
-  mechanism.grasps[0].kind = GraspKind::kPoint;
-  const KinematicTree tree = BuildKinematicTree(mechanism);
+/// Scale 0: the one that suits the device.
+void HoldAtAPoint(const KinematicTree& tree, Grip grip, double scale) {
+  SCOPED_TRACE("grip " + std::to_string(static_cast<int>(grip)) + ", scale " +
+               std::to_string(scale));
   const VectorXd q = ClosedStart(tree);
-  PointMaster master(SmallDevice());
+  PointMaster master(SmallDevice(grip));
   master.Configure();
   CoupledTickOptions options;
-  options.scale = 0.02;
-  const CouplingChoice choice = ChooseCoupling(tree, GraspFrameOf(tree, 0), q, master.info(),
-                                               options.smoothing, options.scale);
+  const CouplingChoice choice =
+      ChooseCoupling(tree, GraspFrameOf(tree, 0), q, master.info(), options.smoothing, scale);
+  options.scale = choice.scale;
   options.coupling = choice.coupling;
   CoupledTick tick(tree, 0, q, master.info().period, options);
   RunnerOptions run;
@@ -181,6 +181,15 @@ TEST_P(SmallDevices, HoldEveryExampleAtAPointWithoutAJump) {
   EXPECT_LE(summary.peak_force, 8 * (1 + 1e-9));
   EXPECT_GT(summary.peak_force, 0.1);
   EXPECT_LT(LargestStep(runner.Kept()), 1);
+}
+
+TEST_P(SmallDevices, HoldEveryExampleAtAPointWithoutAJump) {
+  Mechanism mechanism = Example(GetParam());
+  mechanism.grasps[0].kind = GraspKind::kPoint;
+  const KinematicTree tree = BuildKinematicTree(mechanism);
+  for (const Grip grip : {Grip::kLight, Grip::kRelaxed, Grip::kFirm}) {
+    for (const double scale : {0.0, 0.02}) HoldAtAPoint(tree, grip, scale);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Examples, SmallDevices, testing::ValuesIn(HeldBySmallDevices()),
