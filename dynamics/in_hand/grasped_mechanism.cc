@@ -7,6 +7,7 @@
 
 #include "vmech/base/linear_algebra/small_ldlt.h"
 #include "vmech/base/screw_algebra.h"
+#include "vmech/kinematics/loops/dimensionless_loops.h"
 #include "vmech/kinematics/loops/loops.h"
 #include "vmech/kinematics/tree/validity.h"
 
@@ -22,7 +23,7 @@ bool IsSame(const GraspFrame& a, const GraspFrame& b) noexcept {
 GraspedMechanism::GraspedMechanism(const KinematicTree& tree, std::span<const GraspFrame> grasps)
     : tree_(tree),
       gravity_W_(tree.mechanism.gravity_W),
-      row_scale_(LoopRowScale(tree)),
+      row_scale_(BindingRowScale(tree)),
       ws_(tree),
       inertias_(tree),
       joints_(tree.mechanism.joints.size()),

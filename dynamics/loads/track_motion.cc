@@ -153,7 +153,7 @@ class Tracker {
     q_predicted_ = q_trial_;
     const double error =
         CloseByNewton(tree_, tolerance_, kNewtonSteps, &dependents_, &ws_, q_trial_.data());
-    const double correction = (q_trial_ - q_predicted_).cwiseAbs().maxCoeff();
+    const double correction = (q_trial_ - q_predicted_).lpNorm<Eigen::Infinity>();
     if (!(error <= tolerance_) || correction > kTrustedShare * size + kTrustedTurn) return false;
     Accept();
     position_ = target;
@@ -165,7 +165,7 @@ class Tracker {
   double Predict(const std::vector<double>& target) {
     if (history_ > 0) {
       Extrapolate();
-      return (q_trial_ - q_).cwiseAbs().maxCoeff();
+      return (q_trial_ - q_).lpNorm<Eigen::Infinity>();
     }
     EvaluatePose(tree_, q_, &ws_);
     dependents_.Factor(ws_);
@@ -175,7 +175,7 @@ class Tracker {
     }
     dependents_.CompleteVelocities(ws_, step_.data());
     MoveCoordinates(tree_, step_, &q_trial_);
-    return step_.cwiseAbs().maxCoeff();
+    return step_.lpNorm<Eigen::Infinity>();
   }
 
   /// The polynomial through the poses so far, taken as equally spaced: after a step or two of

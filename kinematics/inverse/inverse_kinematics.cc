@@ -85,7 +85,7 @@ InverseKinematics::InverseKinematics(const KinematicTree& tree, const GraspFrame
       tree_(tree),
       grasp_(grasp),
       rotation_error_(options.rotation_error),
-      row_scale_(LoopRowScale(tree)),
+      row_scale_(BindingRowScale(tree)),
       angular_(tree.nv),
       linear_(tree.nv),
       q_(VectorXd::Constant(tree.nq, std::numeric_limits<double>::quiet_NaN())),
@@ -114,22 +114,6 @@ InverseKinematics::InverseKinematics(const KinematicTree& tree, const GraspFrame
     std::reverse(chain.begin(), chain.end());
     chain.insert(chain.end(), up.begin(), up.end());
     loop_chains_.push_back(std::move(chain));
-  }
-  LeaveOutLoopsThatHoldAnyway();
-}
-
-void InverseKinematics::LeaveOutLoopsThatHoldAnyway() {
-  const VectorXd unit = VelocityScale(tree_), somewhere = VectorXd::LinSpaced(tree_.nv, 0.3, 0.7);
-  VectorXd q = StartCoordinates(tree_), c(tree_.rows), held = VectorXd::Zero(tree_.rows);
-  MatrixXd C(tree_.rows, tree_.nv);
-  for (const double moved : {0.0, 1.0}) {
-    MoveCoordinates(tree_, moved * somewhere.cwiseProduct(unit), &q);
-    Evaluate(q, nullptr, nullptr, &c, &C);
-    held = held.cwiseMax(c.cwiseAbs()).cwiseMax((C * unit.asDiagonal()).rowwise().lpNorm<1>());
-  }
-  for (const Loop& loop : tree_.loops) {
-    const auto rows = Eigen::seqN(loop.row, loop.rows);
-    if (held(rows).maxCoeff() < kRankTolerance) row_scale_(rows).setZero();
   }
 }
 

@@ -94,10 +94,6 @@ class InverseKinematics final : public ConstrainedLeastSquares {
     Matrix3d G;
   };
 
-  /// Loops that are closed wherever the tree goes, as by the second hinge of a door or a second
-  /// guide beside a first: there is but rounding in their rows, which no solver must take for an
-  /// equation. Their weights W become zero.
-  void LeaveOutLoopsThatHoldAnyway();
   void MoveTo(const VectorXd& q);
   void EvaluateGrasp(VectorXd* r, MatrixXd* J);
   void EvaluateLoops(VectorXd* c, MatrixXd* C);

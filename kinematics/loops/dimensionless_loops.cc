@@ -4,6 +4,7 @@
 
 #include "vmech/kinematics/loops/closure.h"
 #include "vmech/kinematics/loops/loops.h"
+#include "vmech/kinematics/tree/forward_kinematics.h"
 
 namespace vmech {
 
@@ -24,6 +25,24 @@ MatrixXd DimensionlessLoopJacobian(const KinematicTree& tree, const VectorXd& q)
     C.middleRows(tree.loops[l].row, tree.loops[l].rows)(Eigen::all, rows.columns) = rows.A;
   }
   return C;
+}
+
+VectorXd BindingRowScale(const KinematicTree& tree) {
+  VectorXd scale = LoopRowScale(tree), q = StartCoordinates(tree);
+  const VectorXd way = VelocityScale(tree).cwiseProduct(VectorXd::LinSpaced(tree.nv, 0.3, 0.7));
+  VectorXd size = VectorXd::Zero(tree.rows);
+  TreeWorkspace<double> ws(tree);
+  for (const double moved : {0.0, 1.0}) {
+    MoveCoordinates(tree, moved * way, &q);
+    EvaluatePose(tree, q, &ws, false);
+    size = size.cwiseMax(scale.cwiseProduct(StackedLoopErrors(tree, ws)).cwiseAbs())
+               .cwiseMax(DimensionlessLoopJacobian(tree, q).rowwise().lpNorm<1>());
+  }
+  for (const Loop& loop : tree.loops) {
+    const auto rows = Eigen::seqN(loop.row, loop.rows);
+    if (size(rows).maxCoeff() < kRankTolerance) scale(rows).setZero();
+  }
+  return scale;
 }
 
 RowBlock DimensionlessLoopRows(const KinematicTree& tree, const TreeWorkspace<double>& ws,

@@ -15,6 +15,12 @@ VectorXd VelocityScale(const KinematicTree& tree);
 /// The scaled loop Jacobian at q: rows and columns of lengths measured in characteristic lengths.
 MatrixXd DimensionlessLoopJacobian(const KinematicTree& tree, const VectorXd& q);
 
+/// LoopRowScale, with zeros for the loops that are closed wherever the tree goes, as by the second
+/// hinge of a door or a second guide beside a first: there is but rounding in their rows, which no
+/// solver that judges rows by their own size must take for equations. Looks at the start and at a
+/// pose far from it.
+VectorXd BindingRowScale(const KinematicTree& tree);
+
 /// The rows of one loop in DimensionlessLoopJacobian, by their columns. Needs LoopJacobian in ws.
 RowBlock DimensionlessLoopRows(const KinematicTree& tree, const TreeWorkspace<double>& ws,
                                size_t loop);

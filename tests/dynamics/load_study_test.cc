@@ -14,6 +14,7 @@
 #include "vmech/dynamics/loads/prepare_study.h"
 #include "vmech/dynamics/loads/run_load_study.h"
 #include "vmech/dynamics/loads/track_motion.h"
+#include "vmech/mechanisms/files/reader.h"
 
 namespace vmech {
 namespace {
@@ -160,6 +161,31 @@ TEST(IdleFreedoms, TheSpinOfTheRodOfAnRssrIsListed) {
   EXPECT_EQ(result.mobility, 2);
   ASSERT_EQ(result.idle.size(), 1u);
   EXPECT_THAT(result.idle[0], HasSubstr("ball"));
+}
+
+// A bracket that is welded to the wall carries its weight; of two welds nobody knows which does.
+TEST(Structure, IsHeldByItsWelds) {
+  const std::string bracket = R"(vmech: "1.0"
+gravity: [0, 0, -10]
+ground: wall
+links:
+  wall: {anchors: {a: {origin: [0, 0, 0]}, b: {origin: [0, 1, 0]}}}
+  bracket: {mass: 3, center_of_gravity: [0.5, 0, 0],
+            anchors: {a: {origin: [0, 0, 0]}, b: {origin: [0, 1, 0]}}}
+joints:
+  a: {type: weld, connects: [wall/a, bracket/a]}
+)";
+  LoadStudy study;
+  study.times = {0};
+  for (const bool twice : {false, true}) {
+    const std::string second = "  b: {type: weld, connects: [wall/b, bracket/b]}\n";
+    study.mechanism = ParseMechanism(bracket + (twice ? second : ""), "bracket");
+    const LoadStudyResult result = RunLoadStudy(study);
+    Vector3d force = Vector3d::Zero();
+    for (const JointSample& joint : result.poses[0].joints) force += joint.force;
+    EXPECT_NEAR((force - Vector3d(0, 0, 30)).norm(), 0, 1e-9);
+    EXPECT_EQ(result.certainty[0][2], twice ? Certainty::kNotDetermined : Certainty::kCertain);
+  }
 }
 
 TEST(IdleFreedoms, DoNotChangeTheLoadsWhereverTheyStand) {
