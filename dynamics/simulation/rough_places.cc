@@ -36,6 +36,8 @@ bool StepBack(EquationsOfMotion* equations, double time, double step, const Vect
 /// The way to where loops lose rank.
 struct Approach {
   double time_left = 0;   ///< [s]; none if loops do not lose rank ahead
+  double pivot = 0;       ///< here
+  double speed = 0;       ///< of the fastest freedom [1/s]
   VectorXd slopes;        ///< here
   VectorXd their_slopes;  ///< [1/s]
 };
@@ -48,9 +50,9 @@ bool FindSingularPose(EquationsOfMotion* equations, double time, const VectorXd&
   constexpr double kVanishes = 1e-8, kOfItself = 0.05;
   VectorXd behind = y, slopes;
   if (!FindSlopes(equations, time, y, &approach->slopes)) return false;
-  const double here = equations->motion().smallest_pivot();
-  const double speed = std::max(equations->motion().ws().v.cwiseAbs().maxCoeff(), kSlowest);
-  const double step = kShare * std::sqrt(here) / speed;
+  const double here = approach->pivot = equations->motion().smallest_pivot();
+  approach->speed = std::max(equations->motion().ws().v.cwiseAbs().maxCoeff(), kSlowest);
+  const double step = kShare * std::sqrt(here) / approach->speed;
   double pivots[2];
   for (int k = 0; k < 2; ++k) {
     const VectorXd& from = k == 0 ? approach->slopes : slopes;
@@ -95,6 +97,31 @@ bool Collocate(EquationsOfMotion* equations, double time, const Approach& approa
   return false;
 }
 
+/// The shortest one that settles and ends no nearer to where loops lose rank than it begins.
+std::optional<Leap> ShortestLeap(EquationsOfMotion* equations, double time,
+                                 const Approach& approach, const VectorXd& y) {
+  constexpr double kLongest = 0.05;            // [rad]
+  constexpr double kFirst = 2.2, kMore = 1.3;  // of the way to the pose
+  Leap leap{time, kFirst * approach.time_left, y, {}};
+  for (; leap.step * approach.speed < kLongest; leap.step *= kMore) {
+    const bool settles = Collocate(equations, time, approach, y, &leap);
+    if (settles && equations->motion().smallest_pivot() >= approach.pivot) return leap;
+  }
+  return std::nullopt;
+}
+
+/// Loops that only nearly lose rank part next to the pose: a leap over them would lead through what
+/// they do not allow.
+bool StaysOnLoops(EquationsOfMotion* equations, const Approach& approach, const Leap& leap) {
+  constexpr double kClosed = 1e-8;
+  const double time = leap.from + approach.time_left;
+  VectorXd y;
+  leap.At(time, &y);
+  const double* const v = y.data() + equations->tree().nq;
+  equations->TakeState(time, y.data(), v, v);
+  return equations->motion().closure() <= kClosed;
+}
+
 }  // namespace
 
 void Leap::At(double time, VectorXd* y) const {
@@ -117,7 +144,7 @@ void Leap::At(double time, VectorXd* y) const {
 }
 
 bool NearSingularPose(EquationsOfMotion& equations, double step) {
-  constexpr double kNextTo = 1e-7, kInReach = 1e-6, kCreeps = 0.1;
+  constexpr double kNextTo = 1e-4, kInReach = 1e-3, kCreeps = 0.1;
   if (equations.tree().loops.empty()) return false;
   const double pivot = equations.motion().smallest_pivot();
   const double moved = step * equations.motion().ws().v.cwiseAbs().maxCoeff();
@@ -126,24 +153,14 @@ bool NearSingularPose(EquationsOfMotion& equations, double step) {
 
 std::optional<Leap> LeapOverSingularPose(double time, const VectorXd& y,
                                          EquationsOfMotion* equations) {
-  constexpr double kLongest = 0.05;            // [rad]
-  constexpr double kFirst = 2.2, kMore = 1.3;  // of the way to the pose
   Approach approach;
   if (!FindSingularPose(equations, time, y, &approach)) return std::nullopt;
-  equations->Place(time, y.data(), y.data() + equations->tree().nq);
-  const double pivot = equations->motion().smallest_pivot();
-  const double speed = equations->motion().ws().v.cwiseAbs().maxCoeff();
   // Far from the pose accelerations are known best; where they do not settle, nearer.
   for (const bool nearest : {false, true}) {
     equations->ComeNearest(nearest);
-    Leap leap{time, kFirst * approach.time_left, y, {}};
-    bool found = false;
-    for (; !found && leap.step * speed < kLongest; leap.step *= found ? 1 : kMore) {
-      found = Collocate(equations, time, approach, y, &leap) &&
-              equations->motion().smallest_pivot() >= pivot;
-    }
+    std::optional<Leap> leap = ShortestLeap(equations, time, approach, y);
     equations->ComeNearest(false);
-    if (found) return leap;
+    if (leap) return StaysOnLoops(equations, approach, *leap) ? leap : std::nullopt;
   }
   return std::nullopt;
 }

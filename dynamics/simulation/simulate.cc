@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 
+#include "vmech/dynamics/rigid_body/passive.h"
 #include "vmech/dynamics/simulation/equations/equations_of_motion.h"
 #include "vmech/dynamics/simulation/equations/index_two.h"
 #include "vmech/dynamics/simulation/equilibrium.h"
@@ -38,6 +39,19 @@ std::vector<double> AbsoluteTolerances(const KinematicTree& tree, double toleran
   return tolerances;
 }
 
+/// Does anything act against velocities? Nothing decays in a mechanism that keeps its energy: what
+/// looks like it for a while is how its inertia changes as it moves.
+bool Decays(const Simulation& simulation) {
+  const std::vector<Joint>& joints = simulation.mechanism.joints;
+  const auto damps = [](const Passive& passive) { return passive.viscous != 0; };
+  return simulation.hand || HasDryFriction(simulation.mechanism) ||
+         std::any_of(simulation.motors.begin(), simulation.motors.end(),
+                     [](const JointMotor& motor) { return motor.damping != 0; }) ||
+         std::any_of(joints.begin(), joints.end(), [&](const Joint& joint) {
+           return std::any_of(joint.passive.begin(), joint.passive.end(), damps);
+         });
+}
+
 /// A simulation on its way.
 class Run {
  public:
@@ -53,6 +67,8 @@ class Run {
         events_(
             simulation_, &equations_, [this](double time) { return StateAt(time); },
             &result->events),
+        may_be_stiff_(options.method == SimulationMethod::kAutomatic &&
+                      Decays(prepared.simulation)),
         y_(VectorXd::Zero(equations_.size())),
         dense_(y_) {
     problem_.size = equations_.size();
@@ -230,6 +246,7 @@ class Run {
   }
 
   bool Leap() {
+    equations_.Close(time_, y_.data());
     leap_ = LeapOverSingularPose(time_, y_.head(equations_.size()), &equations_);
     if (!leap_) return false;
     GoThrough(leap_->from + leap_->step);
@@ -281,7 +298,7 @@ class Run {
   /// is the end of its step but for less than its tolerance, or a pose beside it for a slope: where
   /// that is well on the loops, so is the end.
   void ReturnToLoops() {
-    constexpr double kWell = 0.5, kFarFromSingular = 1e-4;
+    constexpr double kWell = 0.5, kFarFromSingular = 1e-3;
     const KinematicTree& tree = equations_.tree();
     if (tree.loops.empty() && tree.nq == tree.nv) return;
     const bool is_well = equations_.motion().closure() <= kWell * LargestDrift() &&
@@ -316,10 +333,7 @@ class Run {
   /// not. Looked at ever more seldom.
   void ChangeMethodIfStiff() {
     constexpr double kShort = 0.3;
-    if (options_.method != SimulationMethod::kAutomatic ||
-        statistics_.method != SimulationMethod::kAdams) {
-      return;
-    }
+    if (!may_be_stiff_ || statistics_.method != SimulationMethod::kAdams) return;
     const long steps = integrator_->counts().steps;
     if (steps < next_look_) return;
     const double step = (time_ - last_look_) / static_cast<double>(steps - looked_at_);
@@ -359,6 +373,7 @@ class Run {
   std::unique_ptr<Integrator> integrator_;
   double time_ = 0;
   std::unique_ptr<IndexTwo> index_two_;
+  bool may_be_stiff_ = false;
   VectorXd y_, dense_, slopes_, leapt_;
   std::optional<vmech::Leap> leap_;       ///< the last step was one
   size_t next_ = 0;                       ///< of the times

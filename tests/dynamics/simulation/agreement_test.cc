@@ -10,6 +10,7 @@
 #include "reference_cases.h"
 #include "simulated.h"
 #include "support/windows.h"
+#include "vmech/base/linear_algebra/linear_algebra.h"
 #include "vmech/dynamics/in_hand/coupled_dynamics.h"
 #include "vmech/dynamics/loads/run_load_study.h"
 #include "vmech/dynamics/simulation/motion_loads.h"
@@ -76,19 +77,27 @@ TEST_P(EveryMechanism, KeepsItsEnergyAndItsLoops) {
   EXPECT_GT(result.V(10).norm(), 1e-3);  // it moves
   EXPECT_LT(EnergyError(result), 1e-8);
   EXPECT_LT(result.statistics.largest_closure, 1e-12);
+  // Nothing decays where energy is kept.
+  const bool damped = GetParam().example == "flyball-governor";
+  if (!damped) EXPECT_EQ(result.statistics.method, SimulationMethod::kAdams);
   for (size_t i = 0; i < result.size(); ++i) EXPECT_LT(LargestLoopRate(result, i), 1e-10);
 }
 
-/// Motors at the independent freedoms that move as the mechanism does; none if they are ball
-/// joints'.
+/// Motors at independent freedoms that move as the mechanism does; none at ball joints, about which
+/// a rod then spins as it likes.
 std::vector<JointDrive> DrivesLike(const SimulationResult& result, size_t pose) {
   const KinematicTree& tree = result.tree;
+  MatrixXd free =
+      FindNullSpace(DimensionlessLoopJacobian(tree, result.Q(pose)), kRankTolerance).basis;
+  for (const TreeNode& node : tree.nodes) {
+    if (node.motion == NodeMotion::kSpherical) free.middleRows(node.v, 3).setZero();
+  }
+  const auto rank = static_cast<int>(FindNullSpace(free, kRankTolerance).rank);
   std::vector<JointDrive> drives;
-  for (const int v : ChooseFreedoms(tree, result.Q(pose), {}, kRankTolerance).driven) {
+  for (const int v : MostIndependentRows(free, rank)) {
     const auto node = std::find_if(tree.nodes.begin(), tree.nodes.end(), [v](const TreeNode& n) {
       return n.v >= 0 && n.v <= v && v < n.v + VelocitiesOf(n.motion);
     });
-    if (node->motion == NodeMotion::kSpherical) return {};
     const JointSample joint =
         result.loads.poses.arrays().Joint(pose, static_cast<size_t>(node->joint));
     const int k = node->freedom;
@@ -103,7 +112,7 @@ TEST_P(EveryMechanism, InverseDynamicsAsksForNoForce) {
   const SimulationResult result = Simulate(Falling({0, 0.5 * GetParam().compared}), Tight(1e-10));
   LoadStudy study;
   study.drives = DrivesLike(result, 1);
-  if (study.drives.empty()) GTEST_SKIP() << "moves by ball joints, which no motor drives";
+  ASSERT_FALSE(study.drives.empty());
   study.mechanism = result.tree.mechanism;
   SetStarts(result.tree, result.Q(1), &study.mechanism);
   study.times = {0};
@@ -117,18 +126,18 @@ TEST_P(EveryMechanism, InverseDynamicsAsksForNoForce) {
   }
 }
 
-// All that move of themselves. What is kept for less than ten seconds takes long, or comes to poses
-// at which loops lose rank.
+// All that move of themselves. Platforms whose legs have no limits fall out of all reach within ten
+// seconds: a leg is then a hundred times as long as the mechanism.
 INSTANTIATE_TEST_SUITE_P(
     Examples, EveryMechanism,
     testing::Values(Case{"crank", 0.5, 10}, Case{"two-link-arm", 0.5, 10},
                     Case{"slider-crank", 0.3, 10}, Case{"four-bar", 0.5, 10}, Case{"rssr", 0.3, 10},
                     Case{"rsup", 0.3, 10}, Case{"spherical-four-bar", 0.5, 10},
                     Case{"bennett", 0.5, 10}, Case{"bricard", 0.5, 10},
-                    Case{"stewart-gough", 0.05, 0.5}, Case{"delta-robot", 0.1, 0.5},
-                    Case{"square-four-bar", 0.3, 10}, Case{"marghitu-slider-crank", 0.3, 1},
+                    Case{"stewart-gough", 0.05, 3}, Case{"delta-robot", 0.1, 10},
+                    Case{"square-four-bar", 0.3, 10}, Case{"marghitu-slider-crank", 0.3, 10},
                     Case{"modelica-four-bar", 0.3, 10}, Case{"flyball-governor", 0.1, 1},
-                    Case{"sundials-slider-crank", 0.3, 10}, Case{"dietmaier-platform", 0.05, 0.5},
+                    Case{"sundials-slider-crank", 0.3, 10}, Case{"dietmaier-platform", 0.05, 3},
                     Case{"manseur-doty", 0.3, 10}, Case{"puma-560", 0.3, 10},
                     Case{"redundant-arm", 0.3, 5}),
     [](const auto& info) { return TestName(info.param.example); });
