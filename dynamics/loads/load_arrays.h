@@ -45,6 +45,7 @@ struct HandLoad {
 /// What friction and idle freedoms make of a pose.
 struct PoseState {
   double unresisted = 0;  ///< largest force along an idle freedom without inertia [N] or [N m]
+  double along_idle = 0;  ///< largest that acts on one from outside and by friction [N] or [N m]
   /// Load-dependent friction has no equilibrium here: the mechanism locks itself. The joint
   /// wrenches are those of the last iteration.
   bool jammed = false;

@@ -291,9 +291,10 @@ void WatchLimits(const LoadStudy& study, LoadStudyResult* result) {
   }
 }
 
+constexpr double kRounding = 1e-7;  // of the largest force, along an idle freedom
+
 /// A load along a freedom without inertia has no answer.
 void RefuseUnresisted(const LoadModel& model, double largest_force, const LoadStudyResult& result) {
-  constexpr double kRounding = 1e-7;
   const double largest = largest_force * std::max(1.0, model.tree.length);
   const std::vector<PoseState>& states = result.poses.arrays().states;
   for (size_t i = 0; i < states.size(); ++i) {
@@ -305,6 +306,21 @@ void RefuseUnresisted(const LoadModel& model, double largest_force, const LoadSt
         "and a drive",
         i, result.poses[i].time, unresisted, fmt::join(result.idle, ", ")));
   }
+}
+
+/// What sets an idle freedom moving makes another motion than that which is taken.
+void WarnOfDrivenIdle(const LoadModel& model, double largest_force, LoadStudyResult* result) {
+  const std::vector<PoseState>& states = result->poses.arrays().states;
+  if (model.idle == 0 || states.empty()) return;
+  const auto most = std::max_element(
+      states.begin(), states.end(),
+      [](const PoseState& a, const PoseState& b) { return a.along_idle < b.along_idle; });
+  if (most->along_idle <= kRounding * largest_force * std::max(1.0, model.tree.length)) return;
+  result->warnings.push_back(fmt::format(
+      "friction, springs or loads from outside act with up to {:.4g} N or N m (pose {}) along an "
+      "idle freedom ({}), and would set it moving; the loads are those of links that have not "
+      "gathered that motion. Take off what acts along it, or simulate (`vmech simulate`)",
+      most->along_idle, most - states.begin(), fmt::join(result->idle, ", ")));
 }
 
 void FindSingularPoses(const LoadModel& model, const Motion& motion, LoadStudyResult* result) {
@@ -321,6 +337,7 @@ void Summarise(const LoadModel& model, const Motion& motion, double largest_forc
                LoadArrays* loads, LoadStudyResult* result) {
   CheckBalance(model.tree.length, largest_force, loads, result);
   RefuseUnresisted(model, largest_force, *result);
+  WarnOfDrivenIdle(model, largest_force, result);
   FindSingularPoses(model, motion, result);
   AddFrictionWarnings(model.tree.mechanism, result);
   if (!result->singular_poses.empty()) {

@@ -27,13 +27,13 @@ class Descent {
   void Go() {
     for (; result_.iterations < kIterations; ++result_.iterations) {
       FindStiffness();
-      if (force_.cwiseAbs().maxCoeff() <= kBalanced * size_) {
+      if (force_.lpNorm<Eigen::Infinity>() <= kBalanced * size_) {
         result_.found = true;
         return;
       }
       if (Step()) continue;
       // Rounding may leave more than the bound above.
-      result_.found = force_.cwiseAbs().maxCoeff() <= kRounding * size_;
+      result_.found = force_.lpNorm<Eigen::Infinity>() <= kRounding * size_;
       if (!result_.found) Fail("no step along the forces brings them nearer to a balance");
       return;
     }
@@ -41,7 +41,7 @@ class Descent {
   }
 
   Stability Judge() const {
-    const double least = stiffnesses_.minCoeff(), largest = stiffnesses_.cwiseAbs().maxCoeff();
+    const double least = stiffnesses_.minCoeff(), largest = stiffnesses_.lpNorm<Eigen::Infinity>();
     if (least < -kNeutral * largest) return Stability::kUnstable;
     return least > kNeutral * largest ? Stability::kStable : Stability::kNeutral;
   }
@@ -62,9 +62,9 @@ class Descent {
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(0.5 * (K + K.transpose()));
     stiffnesses_ = eigen.eigenvalues();
     directions_ = eigen.eigenvectors();
-    size_ = std::max({size_, K.cwiseAbs().maxCoeff(), force_.cwiseAbs().maxCoeff()});
+    size_ = std::max({size_, K.lpNorm<Eigen::Infinity>(), force_.lpNorm<Eigen::Infinity>()});
     result_.residual =
-        motions_.Force(motions_.q(), VectorXd::Zero(motions_.freedoms())).cwiseAbs().maxCoeff();
+        motions_.Force(motions_.q(), VectorXd::Zero(motions_.freedoms())).lpNorm<Eigen::Infinity>();
   }
 
   /// Newton's, downhill along every direction, shortened until it leads no higher.
@@ -76,7 +76,7 @@ class Descent {
       along[i] /= std::max(std::abs(stiffnesses_[i]), kSoftest * size_);
     }
     VectorXd step = directions_ * along;
-    step *= std::min(1.0, kLongestStep / step.cwiseAbs().maxCoeff());
+    step *= std::min(1.0, kLongestStep / step.lpNorm<Eigen::Infinity>());
     for (int halving = 0; halving < kHalvings; ++halving, step *= 0.5) {
       const VectorXd there = ForceAt(step);
       if (there.size() == 0) continue;

@@ -34,7 +34,7 @@ Condensed Condense(const MatrixXd& M, const MatrixXd& D, const MatrixXd& K,
   const MatrixXd K_oo = K(without, without);
   const Eigen::LDLT<MatrixXd> factors(K_oo);
   const bool springs =
-      !without.empty() && K_oo.cwiseAbs().maxCoeff() > kNone * K.cwiseAbs().maxCoeff();
+      !without.empty() && K_oo.lpNorm<Eigen::Infinity>() > kNone * K.lpNorm<Eigen::Infinity>();
   if (springs) motions(without, Eigen::all) = -factors.solve(K(without, with));
   const auto reduced = [&](const MatrixXd& A) -> MatrixXd {
     return motions.transpose() * A * motions;
@@ -60,7 +60,7 @@ Mode MakeMode(std::complex<double> eigenvalue, const Eigen::VectorXcd& x, const 
 void AddUndamped(const Condensed& c, const MatrixXd& N, const VectorXd& scale, Modes* modes) {
   const MatrixXd K = 0.5 * (c.K + c.K.transpose());
   const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> eigen(K, c.M);
-  const double largest = eigen.eigenvalues().cwiseAbs().maxCoeff();
+  const double largest = eigen.eigenvalues().lpNorm<Eigen::Infinity>();
   for (Eigen::Index i = 0; i < K.rows(); ++i) {
     const double square = eigen.eigenvalues()[i];
     std::complex<double> eigenvalue = 0;
@@ -83,7 +83,7 @@ void AddDamped(const Condensed& c, const MatrixXd& N, const VectorXd& scale, Mod
   A.bottomLeftCorner(n, n) = -inertia.solve(c.K);
   A.bottomRightCorner(n, n) = -inertia.solve(c.D);
   const Eigen::EigenSolver<MatrixXd> eigen(A);
-  const double largest = eigen.eigenvalues().cwiseAbs().maxCoeff();
+  const double largest = eigen.eigenvalues().lpNorm<Eigen::Infinity>();
   for (Eigen::Index i = 0; i < 2 * n; ++i) {
     std::complex<double> eigenvalue = eigen.eigenvalues()[i];
     if (eigenvalue.imag() < 0) continue;  // the other one of a pair
@@ -98,7 +98,7 @@ void AddDamped(const Condensed& c, const MatrixXd& N, const VectorXd& scale, Mod
 }
 
 bool IsSymmetric(const MatrixXd& K) {
-  return (K - K.transpose()).cwiseAbs().maxCoeff() <= kNone * K.cwiseAbs().maxCoeff();
+  return (K - K.transpose()).lpNorm<Eigen::Infinity>() <= kNone * K.lpNorm<Eigen::Infinity>();
 }
 
 void FindModesOf(SmallMotions* motions, Modes* modes) {
@@ -114,7 +114,7 @@ void FindModesOf(SmallMotions* motions, Modes* modes) {
   const Condensed c = Condense(modes->mass, modes->damping, modes->stiffness, least);
   if (c.M.rows() == 0) return;
   const VectorXd all = VelocityScale(motions->tree());
-  const bool undamped = c.D.cwiseAbs().maxCoeff() == 0 && IsSymmetric(c.K);
+  const bool undamped = c.D.lpNorm<Eigen::Infinity>() == 0 && IsSymmetric(c.K);
   (undamped ? AddUndamped : AddDamped)(c, c.motions, all, modes);
   std::stable_sort(modes->modes.begin(), modes->modes.end(), [](const Mode& a, const Mode& b) {
     return std::abs(a.eigenvalue) < std::abs(b.eigenvalue);
@@ -132,9 +132,9 @@ Modes FindModes(const Simulation& simulation) {
   if (motions.freedoms() == 0) return modes;
   FindModesOf(&motions, &modes);
   const VectorXd force = motions.Force(motions.q(), VectorXd::Zero(motions.freedoms()));
-  modes.residual = force.cwiseAbs().maxCoeff();
+  modes.residual = force.lpNorm<Eigen::Infinity>();
   if (modes.residual >
-      kBalanced * modes.stiffness.cwiseAbs().maxCoeff() * motions.scale().maxCoeff()) {
+      kBalanced * modes.stiffness.lpNorm<Eigen::Infinity>() * motions.scale().maxCoeff()) {
     modes.warnings.push_back(fmt::format(
         "the pose is no equilibrium: {:.3g} N or N m are left along a free motion, and the "
         "mechanism moves off; start at its equilibrium, or take the modes for those of a moment",

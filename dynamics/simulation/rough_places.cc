@@ -51,7 +51,7 @@ bool FindSingularPose(EquationsOfMotion* equations, double time, const VectorXd&
   VectorXd behind = y, slopes;
   if (!FindSlopes(equations, time, y, &approach->slopes)) return false;
   const double here = approach->pivot = equations->motion().smallest_pivot();
-  approach->speed = std::max(equations->motion().ws().v.cwiseAbs().maxCoeff(), kSlowest);
+  approach->speed = std::max(equations->motion().ws().v.lpNorm<Eigen::Infinity>(), kSlowest);
   const double step = kShare * std::sqrt(here) / approach->speed;
   double pivots[2];
   for (int k = 0; k < 2; ++k) {
@@ -86,8 +86,8 @@ bool Collocate(EquationsOfMotion* equations, double time, const Approach& approa
       const double at = time + Leap::kAt[i] * leap->step;
       leap->At(at, &stage);
       if (!FindSlopes(equations, at, stage, &slopes)) return false;
-      const double fastest = equations->motion().ws().v.cwiseAbs().maxCoeff();
-      change = std::max(change, leap->step * (slopes - leap->slopes[i]).cwiseAbs().maxCoeff() /
+      const double fastest = equations->motion().ws().v.lpNorm<Eigen::Infinity>();
+      change = std::max(change, leap->step * (slopes - leap->slopes[i]).lpNorm<Eigen::Infinity>() /
                                     std::max(fastest, kSlowest));
       leap->slopes[i] = slopes;
     }
@@ -147,7 +147,7 @@ bool NearSingularPose(EquationsOfMotion& equations, double step) {
   constexpr double kNextTo = 1e-4, kInReach = 1e-3, kCreeps = 0.1;
   if (equations.tree().loops.empty()) return false;
   const double pivot = equations.motion().smallest_pivot();
-  const double moved = step * equations.motion().ws().v.cwiseAbs().maxCoeff();
+  const double moved = step * equations.motion().ws().v.lpNorm<Eigen::Infinity>();
   return pivot < kNextTo || (pivot < kInReach && moved < kCreeps * std::sqrt(pivot));
 }
 
@@ -179,7 +179,7 @@ std::string DescribePlace(double time, const VectorXd& y, const DisplayUnits& un
     text = "friction in proportion to loads has no equilibrium: the mechanism locks";
   } else if (!tree.loops.empty() && equations->motion().smallest_pivot() < kNextTo) {
     text = "its loops lose rank: at this pose they do not decide how it moves on";
-  } else if (tree.nv > 0 && ws.v.cwiseAbs().maxCoeff() > kBeyondBounds) {
+  } else if (tree.nv > 0 && ws.v.lpNorm<Eigen::Infinity>() > kBeyondBounds) {
     text = "it moves beyond all bounds";
   }
   text += ". There";
@@ -201,7 +201,7 @@ double FastestDecay(double time, const VectorXd& y, EquationsOfMotion* equations
   VectorXd here(y.size()), there(y.size()), moved = y;
   if (!equations->Slopes(time, y.data(), here.data())) return 0;
   // Friction of several freedoms turns with their rates: a move is small beside these.
-  const double speed = equations->motion().ws().v.cwiseAbs().maxCoeff();
+  const double speed = equations->motion().ws().v.lpNorm<Eigen::Infinity>();
   const double move = kShare * std::clamp(speed, kSlowest, 1.0);
   VectorXd d = here.head(moving);
   double rate = 0;

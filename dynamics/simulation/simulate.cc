@@ -281,7 +281,7 @@ class Run {
   void RefuseUnresisted() {
     constexpr double kRounding = 1e-7;
     const ConstrainedMotion& motion = equations_.motion();
-    const double largest = motion.ws().tau.cwiseAbs().maxCoeff();
+    const double largest = motion.ws().tau.lpNorm<Eigen::Infinity>();
     if (motion.unresisted() <= kRounding * largest) return;
     Stop(SimulationStatus::kFailed,
          fmt::format("{:.4g} N or N m act along a freedom without inertia, and nothing resists "

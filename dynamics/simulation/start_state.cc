@@ -48,7 +48,7 @@ VectorXd LeastEnergy(const MatrixXd& inertia, const GivenRates& given) {
   const Eigen::LLT<MatrixXd> factors(A);
   // x = L's: |x|^2 is twice the energy.
   const MatrixXd along = factors.matrixL().solve(given.B.transpose()).transpose();
-  const double size = along.cwiseAbs().maxCoeff();
+  const double size = along.lpNorm<Eigen::Infinity>();
   if (size == 0) return VectorXd::Zero(A.rows());
   const VectorXd x = MinimumNormSolution(along / size, given.rates / size, kRank);
   return factors.matrixU().solve(x);

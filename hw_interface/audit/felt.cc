@@ -131,7 +131,7 @@ struct BlockPose {
     if (tree.loops.empty()) return MatrixXd::Identity(tree.nv, tree.nv);
     LoopErrors(tree, &ws);
     LoopJacobian(tree, &ws);
-    return FindNullSpace(LoopRowScale(tree).asDiagonal() * DenseLoopJacobian(tree, ws),
+    return FindNullSpace(BindingRowScale(tree).asDiagonal() * DenseLoopJacobian(tree, ws),
                          kRankTolerance)
         .basis;
   }

@@ -10,6 +10,7 @@
 #include "vmech/base/linear_algebra/linear_algebra.h"
 #include "vmech/dynamics/rigid_body/newton_euler.h"
 #include "vmech/kinematics/loops/assembly.h"
+#include "vmech/kinematics/loops/dimensionless_loops.h"
 #include "vmech/kinematics/loops/loops.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
 
@@ -31,7 +32,8 @@ MatrixXd AllowedMotions(const KinematicTree& tree, TreeWorkspace<double>* ws) {
   constexpr double kRank = 1e-9;
   LoopErrors(tree, ws);
   LoopJacobian(tree, ws);
-  return FindNullSpace(LoopRowScale(tree).asDiagonal() * DenseLoopJacobian(tree, *ws), kRank).basis;
+  return FindNullSpace(BindingRowScale(tree).asDiagonal() * DenseLoopJacobian(tree, *ws), kRank)
+      .basis;
 }
 
 /// w_d: as fast as hold, delay and filter let a handle swing on the coupling, and no faster than

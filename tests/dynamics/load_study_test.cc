@@ -188,6 +188,17 @@ joints:
   }
 }
 
+TEST(IdleFreedoms, WarnOfWhatWouldSetThemMoving) {
+  LoadStudy study = StudyOf("rssr");
+  const auto warned = testing::Contains(HasSubstr("act with up to"));
+  EXPECT_THAT(RunLoadStudy(study).warnings, testing::Not(warned));
+  for (Joint& joint : study.mechanism.joints) {
+    if (joint.type != JointType::kSpherical) continue;
+    for (Passive& passive : joint.passive) passive.viscous = 0.01;
+  }
+  EXPECT_THAT(RunLoadStudy(study).warnings, warned);
+}
+
 TEST(IdleFreedoms, DoNotChangeTheLoadsWhereverTheyStand) {
   // The rod's spin at the start is what the file says; turn it by a quarter of a turn.
   LoadStudy study = StudyOf("rssr");

@@ -80,6 +80,26 @@ MatrixX<T> IdleAmong(const LoadModel& model, const TreeWorkspace<T>& ws, const M
   return N.rightCols(model.idle);
 }
 
+/// The largest of forces, of a dual its value.
+template <typename T>
+double Largest(const VectorX<T>& forces) {
+  double largest = 0;
+  for (const T& force : forces) largest = std::max(largest, std::abs(Lane(force, 0)));
+  return largest;
+}
+
+/// What loads from outside, springs and friction exert along each idle motion.
+template <typename T>
+VectorX<T> AlongIdle(const LoadModel& model, LoadWorkspace<T>* ws) {
+  const auto solve = [&](const ScrewT<T>* applied, VectorX<T>* tau) {
+    NewtonEuler<T>(model.tree, ws->inertias, applied, &ws->tree, tau->data());
+  };
+  VectorX<T> unloaded(model.tree.nv);
+  solve(nullptr, &unloaded);
+  solve(ws->applied.data(), &ws->tau);
+  return ws->idle_motions.transpose() * (ws->passive + unloaded - ws->tau);
+}
+
 }  // namespace
 
 template <typename T>
@@ -98,6 +118,7 @@ void RemoveIdleMomentum(const LoadModel& model, LoadWorkspace<T>* ws) {
 
 template <typename T>
 void SettleIdleFreedoms(const LoadModel& model, LoadWorkspace<T>* ws) {
+  ws->along_idle = Largest<T>(AlongIdle(model, ws));
   if (model.idle_is_held) return;
   const auto open = [&]() -> VectorX<T> {
     return ws->idle_motions.transpose() * (ws->tau - ws->passive);
@@ -108,8 +129,7 @@ void SettleIdleFreedoms(const LoadModel& model, LoadWorkspace<T>* ws) {
   GyroscopicWrenches(model.tree, ws->inertias, &ws->tree);
   ForwardAccelerations(model.tree, ws->vdot.data(), &ws->tree);
   NewtonEuler(model.tree, ws->inertias, ws->applied.data(), &ws->tree, ws->tau.data());
-  ws->unresisted = 0;
-  for (const T& force : open()) ws->unresisted = std::max(ws->unresisted, std::abs(Lane(force, 0)));
+  ws->unresisted = Largest<T>(open());
 }
 
 void IdlePositions::Remember(const TreeWorkspace<double>& ws) {

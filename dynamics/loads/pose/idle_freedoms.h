@@ -10,7 +10,8 @@ namespace vmech {
 ///
 ///   N_i' M v = 0   and   N_i' (M v' + h - passive) = 0.
 ///
-/// Both hold at all times for a rod whose mass is symmetric about the axis of its spin.
+/// Both hold at all times for a rod whose mass is symmetric about the axis of its spin, as long as
+/// nothing acts along it.
 
 /// Those without inertia (a rod without mass, or with its mass on its axis: how a distance is often
 /// drawn) have neither momentum nor force; their rates and accelerations are zero. What counts as
@@ -27,8 +28,8 @@ template <typename T>
 void RemoveIdleMomentum(const LoadModel& model, LoadWorkspace<T>* ws);
 
 /// Adds to ws->vdot the idle acceleration that leaves no force open along the idle freedoms; brings
-/// accelerations, F and tau up to date. Writes ws->unresisted, the force that is left where no
-/// inertia takes it.
+/// accelerations, F and tau up to date. Writes ws->along_idle, the force that sets them moving, and
+/// ws->unresisted, the force that is left where no inertia takes it.
 template <typename T>
 void SettleIdleFreedoms(const LoadModel& model, LoadWorkspace<T>* ws);
 

@@ -70,6 +70,7 @@ struct LoadWorkspace {
   /// they do although it goes along, which is nothing where the parameter is free to change.
   LoopOpening closing, opening;  ///< lengths over the characteristic length
   double unresisted = 0;         ///< largest force along an idle freedom without inertia [N], [N m]
+  double along_idle = 0;         ///< as PoseState::along_idle
   T power, power_gap, power_size, closure;  ///< power_gap: of the balance; power_size: its terms
   bool jammed = false;                      ///< as PoseState::jammed
   int locking_joint = -1;                   ///< as PoseState::locking_joint

@@ -80,7 +80,8 @@ void StorePoseLoads(const LoadModel& model, const Motion& motion, size_t pose,
   StoreLanes(&ws.closure, 1, &arrays->closures[pose], 1);
   StoreLinks(model, pose, ws, arrays);
   for (int lane = 0; !arrays->states.empty() && lane < kLanesOf<T>; ++lane) {
-    arrays->states[pose + lane] = {ws.unresisted, ws.jammed, ws.locking_joint, ws.held_by_friction};
+    arrays->states[pose + lane] = {ws.unresisted, ws.along_idle, ws.jammed, ws.locking_joint,
+                                   ws.held_by_friction};
   }
   if constexpr (kLanesOf<T> == 1) {
     if (!model.hand) return;

@@ -60,7 +60,7 @@ ContactForces SolveContacts(const MatrixXd& W, const VectorXd& b,
         change = std::max(change, std::abs(step) * W(row, row));
       }
     }
-    if (change <= kConverged * (b.cwiseAbs().maxCoeff() + u.cwiseAbs().maxCoeff())) break;
+    if (change <= kConverged * (b.lpNorm<Eigen::Infinity>() + u.lpNorm<Eigen::Infinity>())) break;
   }
   return result;
 }

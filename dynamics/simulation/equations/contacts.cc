@@ -56,7 +56,7 @@ std::vector<int> FreedomsThatRub(const Joint& joint, const SlidingContact& conta
 }
 
 double LargestRate(const ConstrainedMotion& motion) {
-  return motion.ws().v.size() == 0 ? 0 : motion.ws().v.cwiseAbs().maxCoeff();
+  return motion.ws().v.size() == 0 ? 0 : motion.ws().v.lpNorm<Eigen::Infinity>();
 }
 
 }  // namespace
@@ -214,7 +214,7 @@ ContactForces Contacts::Solve(const ConstrainedMotion& motion, int before) {
   ContactForces result = solved;
   // What is rounding beside the slopes that there would be is none.
   const double least =
-      kNoSlope * (b.cwiseAbs().maxCoeff() + motion.held_slopes().cwiseAbs().maxCoeff());
+      kNoSlope * (b.lpNorm<Eigen::Infinity>() + motion.held_slopes().lpNorm<Eigen::Infinity>());
   for (double& u : result.u) u = std::abs(u) <= least ? 0 : u;
   return result;
 }
