@@ -7,6 +7,10 @@
 
 namespace vmech {
 
+void AddFile(CLI::App* command, const char* name, std::filesystem::path* file, const char* what) {
+  command->add_option(name, *file, what)->required()->type_name("FILE");
+}
+
 void AddTolerance(CLI::App* command, std::optional<double>* tolerance) {
   command
       ->add_option("--tolerance", *tolerance,

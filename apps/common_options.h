@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,8 @@ namespace vmech {
 
 /// Options that several commands have.
 
+/// The file that a command cannot do without, by the name that its help gives it.
+void AddFile(CLI::App* command, const char* name, std::filesystem::path* file, const char* what);
 /// `--tolerance`, within which loops of rounded figures close.
 void AddTolerance(CLI::App* command, std::optional<double>* tolerance);
 /// `--set NAME=VALUE`, parameters of the file.

@@ -126,9 +126,7 @@ int Compare(const CompareArguments& arguments, MpiSession* mpi) {
 
 void AddCompare(CLI::App* app, CompareArguments* compare) {
   CLI::App* command = app->add_subcommand("compare", kCompareHelp);
-  command->add_option("SUITE", compare->suite, "suite file, YAML or JSON")
-      ->required()
-      ->type_name("FILE");
+  AddFile(command, "SUITE", &compare->suite, "suite file, YAML or JSON");
   command->add_option("--solvers", compare->solvers, "names of solvers, by commas (default: all)")
       ->delimiter(',')
       ->type_name("NAMES");

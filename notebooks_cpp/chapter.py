@@ -14,6 +14,10 @@ import nbformat
 import nbformat.v4 as notebook_format
 
 
+# That runs the cells: kernel.py.
+KERNEL = {"name": "vmech", "display_name": "C++ with vmech", "language": "C++"}
+
+
 @dataclasses.dataclass
 class Output:
     line: int  # of the source, from which it was written
@@ -114,7 +118,7 @@ def as_notebook(cells):
     """The same cells for Jupyter. Those tagged `remove-cell`, main's first line and its last, are
     left out: what they wrote stands below the cell before."""
     notebook = notebook_format.new_notebook(metadata={
-        "kernelspec": {"name": "cpp", "display_name": "C++20", "language": "C++"},
+        "kernelspec": KERNEL,
         "language_info": {"name": "C++", "file_extension": ".cc", "mimetype": "text/x-c++src"}})
     for number, cell in enumerate(cells):
         outputs = list(map(output_as_json, cell.outputs))

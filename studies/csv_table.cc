@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "vmech/base/printable_text.h"
+#include "vmech/base/text/printable_text.h"
 
 namespace vmech {
 namespace {

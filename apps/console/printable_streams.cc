@@ -8,7 +8,7 @@
 #include <iostream>
 #include <string>
 
-#include "vmech/base/printable_text.h"
+#include "vmech/base/text/printable_text.h"
 
 namespace vmech {
 namespace {

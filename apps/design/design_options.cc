@@ -26,9 +26,7 @@ constexpr const char* kOptimiseHelp =
 
 void AddSensitivities(CLI::App* app, SensitivityArguments* arguments) {
   CLI::App* command = app->add_subcommand("sensitivities", kSensitivitiesHelp);
-  command->add_option("STUDY", arguments->study, "study file, YAML or JSON")
-      ->required()
-      ->type_name("FILE");
+  AddFile(command, "STUDY", &arguments->study, "study file, YAML or JSON");
   command
       ->add_option("--by", arguments->by,
                    "parameters, as crank/pin.x, coupler.mass or coupler.center_of_gravity.y "
@@ -55,9 +53,7 @@ void AddSensitivities(CLI::App* app, SensitivityArguments* arguments) {
 
 void AddOptimise(CLI::App* app, OptimiseArguments* arguments) {
   CLI::App* command = app->add_subcommand("optimise", kOptimiseHelp);
-  command->add_option("STUDY", arguments->study, "study file, YAML or JSON")
-      ->required()
-      ->type_name("FILE");
+  AddFile(command, "STUDY", &arguments->study, "study file, YAML or JSON");
   CLI::Option* minimise =
       command->add_option("--minimise", arguments->minimise, "the figure to make small")
           ->type_name("FIGURE");

@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "vmech/apps/design/ranked.h"
-#include "vmech/base/number_text.h"
+#include "vmech/base/text/number_text.h"
 #include "vmech/studies/csv_table.h"
 
 namespace vmech {

@@ -232,14 +232,6 @@ int Hold(const HeldMechanism& held, const HapticArguments& arguments, const Mast
                     held.tree, std::move(hands), held.q);
   LiveVariation variation;
   if (arguments.view) variation = VaryTick(held, arguments, &rendering);
-  const VectorXd values = variation.design ? variation.design->asked() : VectorXd();
-  ShownTick* shown = nullptr;
-  if (arguments.view) {
-    auto tick = std::make_unique<ShownTick>(std::move(rendering.tick),
-                                            PictureOf(held.tree, held.q, masters.size(), values));
-    shown = tick.get();
-    rendering.tick = std::move(tick);
-  }
   const VariedTick* const varied = variation.tick;
   RunnerOptions options = OptionsOf(arguments, held, rendering);
   if (varied != nullptr) options.mechanism = {};  // the last ticks may be another mechanism's
@@ -252,8 +244,8 @@ int Hold(const HeldMechanism& held, const HapticArguments& arguments, const Mast
   }
   RunSummary summary;
   std::optional<HapticView> view;
-  if (shown != nullptr) {
-    view.emplace(held.tree, shown, runner, std::move(variation));
+  if (arguments.view) {
+    view.emplace(held.tree, &runner, std::move(variation));
     fmt::print("The session is shown at\n  {}\n", view->url());
     std::fflush(stdout);
   }

@@ -35,12 +35,8 @@ Json Figure(const char* name, double value, const char* unit) {
 /// The loop, for a page that watches.
 class HapticView::Subject : public PageSubject {
  public:
-  Subject(const KinematicTree& tree, ShownTick* tick, const Runner& runner, LiveVariation variation)
-      : tree_(tree),
-        period_(runner.period()),
-        tick_(tick),
-        runner_(runner),
-        variation_(std::move(variation)) {
+  Subject(const KinematicTree& tree, Runner* runner, LiveVariation variation)
+      : tree_(tree), runner_(runner), variation_(std::move(variation)) {
     if (design() != nullptr) values_ = design()->asked();
   }
 
@@ -65,8 +61,8 @@ class HapticView::Subject : public PageSubject {
 
   std::string NewState() override {
     const std::scoped_lock lock(mutex_);
-    if (!tick_->pictures().Take()) return "";
-    const TickPicture& picture = tick_->pictures().front();
+    if (!runner_->pictures().Take()) return "";
+    const TickPicture& picture = runner_->pictures().front();
     LeadDesign(picture);
     Json message{{"state", StateOf(picture)}};
     if (design() != nullptr) {
@@ -103,7 +99,7 @@ class HapticView::Subject : public PageSubject {
   }
 
   Json StateOf(const TickPicture& picture) const {
-    const LiveStatus& live = runner_.live();
+    const LiveStatus& live = runner_->live();
     Mechanism now = tree_.mechanism;
     SetStarts(tree_, picture.q, &now);
     Json poses = Json::array(), wrenches = Json::array();
@@ -111,7 +107,7 @@ class HapticView::Subject : public PageSubject {
     for (const Wrenchd& w : picture.joints) {
       wrenches.push_back(ArrayOf(Stacked<double>(w.force, w.moment)));
     }
-    return {{"time", static_cast<double>(live.ticks) * period_},
+    return {{"time", static_cast<double>(live.ticks) * runner_->period()},
             {"mode", "haptic"},
             {"poses", std::move(poses)},
             {"coordinates", StartOfFreedoms(now)},
@@ -129,9 +125,7 @@ class HapticView::Subject : public PageSubject {
   }
 
   KinematicTree tree_;  // as it is now
-  const double period_;
-  ShownTick* tick_;
-  const Runner& runner_;
+  Runner* runner_;
   LiveVariation variation_;
   VectorXd values_;         // of the design that pages have
   std::uint64_t sent_ = 0;  // designs
@@ -140,8 +134,8 @@ class HapticView::Subject : public PageSubject {
 };
 
 struct HapticView::Parts {
-  Parts(const KinematicTree& tree, ShownTick* tick, const Runner& runner, LiveVariation variation)
-      : subject(tree, tick, runner, std::move(variation)), session(&subject, 0), publisher([this] {
+  Parts(const KinematicTree& tree, Runner* runner, LiveVariation variation)
+      : subject(tree, runner, std::move(variation)), session(&subject, 0), publisher([this] {
           while (!over) {
             session.Publish();
             std::this_thread::sleep_for(std::chrono::milliseconds(8));
@@ -158,24 +152,13 @@ struct HapticView::Parts {
   std::thread publisher;
 };
 
-HapticView::HapticView(const KinematicTree& tree, ShownTick* tick, const Runner& runner,
-                       LiveVariation variation)
-    : parts_(std::make_unique<Parts>(tree, tick, runner, std::move(variation))) {}
+HapticView::HapticView(const KinematicTree& tree, Runner* runner, LiveVariation variation)
+    : parts_(std::make_unique<Parts>(tree, runner, std::move(variation))) {}
 
 HapticView::~HapticView() = default;
 
 std::string HapticView::url() const {
   return parts_->session.url();
-}
-
-TickPicture PictureOf(const KinematicTree& tree, const VectorXd& q, std::size_t hands,
-                      const VectorXd& values) {
-  TickPicture picture;
-  picture.q = q;
-  picture.joints.resize(tree.mechanism.joints.size());
-  picture.others.resize(hands - 1);
-  picture.design = values;
-  return picture;
 }
 
 }  // namespace vmech

@@ -1,11 +1,9 @@
 #pragma once
 
-#include <cstddef>
 #include <memory>
 
 #include "vmech/apps/view/live_design.h"
 #include "vmech/hw_interface/loop/runner.h"
-#include "vmech/hw_interface/screen/shown_tick.h"
 #include "vmech/hw_interface/variation/varied_tick.h"
 #include "vmech/kinematics/tree/kinematic_tree.h"
 
@@ -22,8 +20,7 @@ struct LiveVariation {
 class HapticView {
  public:
   /// Keeps references. @throws std::runtime_error if the page cannot be served.
-  HapticView(const KinematicTree& tree, ShownTick* tick, const Runner& runner,
-             LiveVariation variation = {});
+  HapticView(const KinematicTree& tree, Runner* runner, LiveVariation variation = {});
   ~HapticView();
 
   std::string url() const;
@@ -33,9 +30,5 @@ class HapticView {
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };
-
-/// A picture of the tree's sizes, so many hands and the parameters that are varied, for ShownTick.
-TickPicture PictureOf(const KinematicTree& tree, const VectorXd& q, std::size_t hands,
-                      const VectorXd& values);
 
 }  // namespace vmech

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "vmech/base/printable_text.h"
+#include "vmech/base/text/printable_text.h"
 
 namespace vmech::html {
 namespace {

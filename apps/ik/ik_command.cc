@@ -29,9 +29,7 @@ std::string Solvers() {
 void AddIk(CLI::App* app, IkArguments* ik) {
   CLI::App* command = app->add_subcommand("ik", kIkHelp);
   IkQuestion& question = ik->question;
-  command->add_option("MECHANISM", question.mechanism, "mechanism file, YAML or JSON")
-      ->required()
-      ->type_name("FILE");
+  AddFile(command, "MECHANISM", &question.mechanism, "mechanism file, YAML or JSON");
   command
       ->add_option("--target", question.target,
                    "pose of the hand in the world: \"x y z\", \"x y z rx ry rz\" (rotation "

@@ -46,9 +46,7 @@ constexpr const char* kSimulateHelp =
     "Ctrl-C ends it with the results as far as it went, and exit code 3.";
 
 void AddStudyOptions(CLI::App* command, const char* results, LoadsArguments* loads) {
-  command->add_option("STUDY", loads->study, "study file, YAML or JSON")
-      ->required()
-      ->type_name("FILE");
+  AddFile(command, "STUDY", &loads->study, "study file, YAML or JSON");
   command
       ->add_option(
           "--out", loads->out,

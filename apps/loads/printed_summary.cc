@@ -7,7 +7,7 @@
 
 #include "vmech/apps/report/cycle.h"
 #include "vmech/apps/report/joint_section.h"
-#include "vmech/base/number_text.h"
+#include "vmech/base/text/number_text.h"
 #include "vmech/dynamics/bearings/rating.h"
 #include "vmech/dynamics/loads/load_result.h"
 #include "vmech/dynamics/loads/open_components.h"

@@ -46,9 +46,7 @@ ExportedText Exported(const Mechanism& mechanism, const ExportArguments& argumen
 
 void AddExport(CLI::App* app, ExportArguments* arguments) {
   CLI::App* command = app->add_subcommand("export", kExportHelp);
-  command->add_option("MECHANISM", arguments->mechanism, "mechanism file, YAML or JSON")
-      ->required()
-      ->type_name("FILE");
+  AddFile(command, "MECHANISM", &arguments->mechanism, "mechanism file, YAML or JSON");
   command->add_option("--out", arguments->out, "file to write")->required()->type_name("FILE");
   AddSet(command, &arguments->set);
   AddTolerance(command, &arguments->tolerance);

@@ -103,9 +103,7 @@ void Answer(Asked asked, const ModesArguments& arguments) {
 
 void AddModes(CLI::App* app, ModesArguments* modes) {
   CLI::App* command = app->add_subcommand("modes", kModesHelp);
-  command->add_option("FILE", modes->file, "mechanism, or study with a block `simulation`")
-      ->required()
-      ->type_name("FILE");
+  AddFile(command, "FILE", &modes->file, "mechanism, or study with a block `simulation`");
   command
       ->add_option("--out", modes->out,
                    "folder for modes.csv, and for a study of each mode, which vmech view plays")

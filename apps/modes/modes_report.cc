@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "vmech/base/number_text.h"
+#include "vmech/base/text/number_text.h"
 #include "vmech/dynamics/loads/pose/joint_load.h"
 #include "vmech/dynamics/rigid_body/passive.h"
 #include "vmech/kinematics/loops/closure.h"

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "vmech/base/number_text.h"
+#include "vmech/base/text/number_text.h"
 
 namespace vmech::plot {
 

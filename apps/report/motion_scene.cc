@@ -4,7 +4,7 @@
 #include "vmech/apps/report/cycle.h"
 #include "vmech/apps/view/meshes.h"
 #include "vmech/apps/view/scene.h"
-#include "vmech/base/encoding/base64.h"
+#include "vmech/base/text/base64.h"
 #include "vmech/kinematics/loops/assembled_mechanism.h"
 
 namespace vmech {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "vmech/apps/view/json_text.h"
-#include "vmech/base/encoding/base64.h"
+#include "vmech/base/text/base64.h"
 #include "vmech/dynamics/loads/open_components.h"
 #include "vmech/dynamics/loads/pose/external_loads.h"
 #include "vmech/kinematics/loops/assembled_mechanism.h"

@@ -167,9 +167,7 @@ void ViewResults(const ViewArguments& arguments) {
 
 void AddView(CLI::App* app, ViewArguments* view) {
   CLI::App* command = app->add_subcommand("view", kViewHelp);
-  command->add_option("FILE", view->file, "mechanism, study, result folder or recording")
-      ->required()
-      ->type_name("FILE");
+  AddFile(command, "FILE", &view->file, "mechanism, study, result folder or recording");
   command
       ->add_option("--meshes", view->meshes,
                    "folder with an STL file for every link, as `vmech import --meshes` writes it "

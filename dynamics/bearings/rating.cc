@@ -7,7 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "vmech/base/number_text.h"
+#include "vmech/base/text/number_text.h"
 #include "vmech/dynamics/bearings/rating_life.h"
 
 namespace vmech {

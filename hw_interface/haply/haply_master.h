@@ -4,9 +4,9 @@
 #include <memory>
 #include <thread>
 
+#include "vmech/base/triple_buffer.h"
 #include "vmech/hw_interface/haply/haply_wire.h"
 #include "vmech/hw_interface/masters/master.h"
-#include "vmech/hw_interface/screen/triple_buffer.h"
 
 namespace vmech {
 

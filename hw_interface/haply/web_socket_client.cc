@@ -19,7 +19,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "vmech/base/encoding/base64.h"
+#include "vmech/base/text/base64.h"
 
 namespace vmech {
 namespace {

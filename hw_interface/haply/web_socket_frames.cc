@@ -5,7 +5,7 @@
 #include <array>
 #include <bit>
 
-#include "vmech/base/encoding/base64.h"
+#include "vmech/base/text/base64.h"
 
 namespace vmech {
 namespace {

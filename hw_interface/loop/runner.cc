@@ -94,7 +94,8 @@ Runner::Runner(const RunnerOptions& options, std::span<const RunnerHand> hands, 
       outputs_(hands.size()),
       period_(hands.front().master->info().period),
       period_ns_(std::llround(period_ * 1e9)),
-      channels_(tick->ChannelNames()) {
+      channels_(tick->ChannelNames()),
+      pictures_(EmptyRecord(*tick).picture) {
   options.Validate();
   RequireHands(hands, *tick);
   for (const RunnerHand& hand : hands) {
@@ -124,6 +125,7 @@ RunSummary Runner::Run() {
     RunSlot(slot_ns, &record);
     Account(record, now_ns);
     if (recorder_ != nullptr) recorder_->Take(record);
+    Show(record.picture);
     slot_ns += period_ns_;
   }
   Deactivate();
@@ -222,6 +224,12 @@ void Runner::Account(const TickRecord& record, std::int64_t now_ns) noexcept {
   live_.energy = record.energy;
   live_.compute_ns = record.compute_ns;
   live_.off = record.off;
+}
+
+void Runner::Show(const TickPicture& picture) noexcept {
+  if (!started_ || !pictures_.wanted()) return;
+  pictures_.back() = picture;
+  pictures_.Publish();
 }
 
 void Runner::Finish() {

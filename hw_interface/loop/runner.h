@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "vmech/base/nonblocking.h"
+#include "vmech/base/triple_buffer.h"
 #include "vmech/hw_interface/loop/hand_loop.h"
 #include "vmech/hw_interface/loop/histogram.h"
 #include "vmech/hw_interface/loop/loop_clock.h"
@@ -105,7 +106,10 @@ class Runner {
   void EmergencyStop() noexcept { emergency_stop_ = true; }
 
   const LiveStatus& live() const noexcept { return live_; }  ///< may be read from any thread
-  double period() const noexcept { return period_; }         ///< [s]
+  /// The mechanism and its hands, for one other thread. A picture is made when the last one has
+  /// been taken, and after the commands have been sent: whoever looks costs no tick any time.
+  TripleBuffer<TickPicture>& pictures() noexcept { return pictures_; }
+  double period() const noexcept { return period_; }  ///< [s]
   /// The ticks that were kept, oldest first.
   Recording Kept() const;
   /// What every recording of this run begins with.
@@ -122,6 +126,7 @@ class Runner {
   void StepTick(TickRecord* record) noexcept VMECH_NONBLOCKING;
   void RegisterThoseThatArrive() noexcept;
   void Account(const TickRecord& record, std::int64_t now_ns) noexcept;
+  void Show(const TickPicture& picture) noexcept;
   void Finish();
   Recording LastTicks(std::uint64_t count) const;
 
@@ -135,6 +140,7 @@ class Runner {
   std::int64_t period_ns_;
   std::vector<std::string> channels_;
   std::vector<TickRecord> kept_;  // a ring
+  TripleBuffer<TickPicture> pictures_;
   TickRecorder* recorder_ = nullptr;
   RunSummary summary_;
   LiveStatus live_;

@@ -5,9 +5,9 @@
 #include <span>
 #include <string>
 
+#include "vmech/base/triple_buffer.h"
 #include "vmech/hw_interface/rendering/coupled_tick.h"
 #include "vmech/hw_interface/rendering/tick_around.h"
-#include "vmech/hw_interface/screen/triple_buffer.h"
 #include "vmech/hw_interface/variation/design_path.h"
 
 namespace vmech {

@@ -9,7 +9,6 @@
 
 #include "vmech/base/check_range.h"
 #include "vmech/base/linear_algebra/signed_elimination.h"
-#include "vmech/base/linear_algebra/small_ldlt.h"
 #include "vmech/kinematics/inverse/configuration_distance.h"
 #include "vmech/kinematics/loops/unseen_motions.h"
 #include "vmech/kinematics/tree/validity.h"
@@ -17,26 +16,20 @@
 namespace vmech {
 namespace {
 
-/// |det(A'A_ref)| over det(A_ref'A_ref), below which a pose is in the dead zone: nearly at a dead
-/// centre, on one side or the other.
+/// |BranchDeterminant| below which a pose is in the dead zone: nearly at a dead centre, on one side
+/// or the other.
 constexpr double kDeadZone = 1e-3;
 /// How far a pose in the dead zone is moved back to its side [rad or m].
 constexpr double kBeside = 2e-3;
 /// The reference moves on when it is so far behind [rad or m]; near a dead centre it stays back as
 /// long as it tells something.
 constexpr double kReferenceBehind = 0.05, kReferenceRange = 0.2;
-/// det(A'A_ref) over the largest det(A'A) so far, below which a pose is near a dead centre: where
-/// the hand moves the mechanism 30 times less than elsewhere.
-constexpr double kReferenceNear = 1e-3;
-/// Added to A'A_ref, as a part of its largest diagonal: exactly singular poses have logarithms too.
-constexpr double kFloor = 1e-12;
 /// A step that is longer than this part of the one before calls for second derivatives.
 constexpr double kSlow = 0.02;
 /// After a step as long as this at most [rad or m], the next may take the same derivatives.
 constexpr double kShort = 1e-2;
 /// ..if it is shorter by this.
 constexpr double kContraction = 0.25;
-constexpr int kInverseIterations = 4;
 constexpr int kClosingSteps = 3;
 constexpr double kClosingWeight = 1e3;
 
@@ -113,10 +106,9 @@ HandTracker::HandTracker(const KinematicTree& tree, const GraspFrame& grasp, con
       trial_(q),
       good_multipliers_(VectorXd::Zero(tree.rows)),
       at_trial_(problem_.sizes()),
-      A_(MatrixXd::Zero(PaddedSize(problem_.sizes().residuals + tree.rows), tree.nv)),
-      product_(tree.nv, tree.nv),
-      normal_(tree.nv),
-      step_(tree.nv),
+      branch_(problem_.sizes().residuals + tree.rows, tree.nv),
+      q_reference_(q),
+      soft_(tree.nv),
       dq_(tree.nv),
       origin_(q) {
   options.Validate();
@@ -129,10 +121,7 @@ HandTracker::HandTracker(const KinematicTree& tree, const GraspFrame& grasp, con
   problem_.SetTarget(problem_.GraspPose(q));
   at_trial_.Evaluate(problem_, q);
   RequireClosed("HandTracker", at_trial_.c.lpNorm<Eigen::Infinity>(), options.closure_tolerance);
-  StackJacobians();
-  unseen_ = unseen_reference_ = UnseenVelocities(&problem_, q);
-  unseen_weight_ = A_.colwise().squaredNorm().maxCoeff();
-  SetReference();
+  branch_.Begin(at_trial_.J, at_trial_.C, UnseenVelocities(&problem_, q));
 }
 
 TrackStatus HandTracker::Advance(const Posed& X_WH) noexcept {
@@ -259,11 +248,10 @@ void HandTracker::Close() noexcept {
 /// Whether trial_ may follow the last good pose: kFollowed, or why not.
 TrackStatus HandTracker::Judge() noexcept {
   Close();
-  StackJacobians();
-  if (!std::isfinite(A_.sum() + at_trial_.r.sum() + at_trial_.c.sum())) return TrackStatus::kLost;
-  determinant_ = BranchDeterminant();
-  if (std::abs(determinant_) < kDeadZone) return TrackStatus::kDeadCentre;
-  if (determinant_ < 0) return TrackStatus::kJump;
+  if (!at_trial_.AllFinite()) return TrackStatus::kLost;
+  branch_.Take(at_trial_.J, at_trial_.C);
+  if (std::abs(branch_.value()) < kDeadZone) return TrackStatus::kDeadCentre;
+  if (branch_.value() < 0) return TrackStatus::kJump;
   return IsClosed() ? TrackStatus::kFollowed : TrackStatus::kLost;
 }
 
@@ -271,85 +259,21 @@ bool HandTracker::IsClosed() const noexcept {
   return at_trial_.c.lpNorm<Eigen::Infinity>() <= options_.closure_tolerance;
 }
 
-void HandTracker::StackJacobians() noexcept {
-  const Eigen::Index residuals = at_trial_.J.rows(), constraints = at_trial_.C.rows();
-  for (Eigen::Index j = 0; j < A_.cols(); ++j) {
-    double* A_j = A_.data() + j * A_.rows();
-    std::copy_n(at_trial_.J.data() + j * residuals, residuals, A_j);
-    std::copy_n(at_trial_.C.data() + j * constraints, constraints, A_j + residuals);
-  }
-}
-
-/// det(A'A_ref) over det(A_ref'A_ref), unseen motions left out; these, at trial_, go to unseen_.
-///
-/// With N the unseen motions, A N = 0, and M = A_ref'A + s N_ref N_ref',
-///
-///     det M = s^k det(N_ref'N) det(A_ref'A on the others),   M^-1 s N_ref = N (N_ref'N)^-1,
-///
-/// so that one elimination gives the determinant and N.
-double HandTracker::BranchDeterminant() noexcept {
-  const int n = static_cast<int>(A_.cols()), rows = static_cast<int>(A_.rows());
-  for (int j = 0; j < n; ++j) {
-    for (int i = 0; i < n; ++i) {
-      product_.data()[j * n + i] =
-          DotOfDouble4(A_.data() + i * rows, A_reference_.data() + j * rows, rows);
-    }
-  }
-  const bool some_unseen = unseen_.cols() > 0;
-  if (some_unseen) {
-    product_.transposeInPlace();
-    AddUnseen(unseen_reference_);
-    unseen_ = unseen_weight_ * unseen_reference_;
-  }
-  product_.diagonal().array() += kFloor * product_.diagonal().cwiseAbs().maxCoeff();
-  double log = 0;
-  const int sign = EliminateForSign(product_, unseen_, &log);
-  if (some_unseen && sign == 0) unseen_ = unseen_reference_;
-  if (some_unseen && sign != 0) {
-    BackSubstitute(product_, unseen_);
-    log += Orthonormalise(unseen_);
-  }
-  return sign * std::exp(log - log_reference_);
-}
-
-// product_ += s N N'
-void HandTracker::AddUnseen(const MatrixXd& N) noexcept {
-  for (Eigen::Index k = 0; k < N.cols(); ++k) {
-    for (Eigen::Index j = 0; j < N.rows(); ++j) {
-      product_.col(j) += unseen_weight_ * N(j, k) * N.col(k);
-    }
-  }
-}
-
-/// The motion that hand and loops resist least at trial_, but for what they do not see anywhere, by
-/// inverse iteration on A'A: step_, of size kBeside.
-void HandTracker::FindLeastStiffDirection() noexcept {
-  product_ = A_.transpose().lazyProduct(A_);
-  AddUnseen(unseen_);
-  product_.diagonal().array() += kFloor * product_.diagonal().maxCoeff();
-  normal_.compute(product_);
-  step_ = VectorXd::LinSpaced(step_.size(), 1, 2);
-  for (int i = 0; i < kInverseIterations; ++i) {
-    normal_.solveInPlace(step_);
-    step_ *= kBeside / step_.lpNorm<Eigen::Infinity>();
-  }
-}
-
-/// trial_ goes from origin_ by `size` soft motions. Whether the loops close there, on the branch.
+/// trial_ goes from origin_ by `size` of the soft motion. Whether the loops close there, on the
+/// branch.
 bool HandTracker::TryBeside(double size) noexcept {
-  dq_ = size * step_;
+  dq_ = size * soft_;
   problem_.Plus(origin_, dq_, &trial_);
   Close();
-  StackJacobians();
-  determinant_ = BranchDeterminant();
-  return IsClosed() && determinant_ > 0 && WithinLimits();
+  branch_.Take(at_trial_.J, at_trial_.C);
+  return IsClosed() && branch_.value() > 0 && WithinLimits();
 }
 
 /// From a pose in the dead zone to its side.
 bool HandTracker::OffsetFromSingularity() noexcept {
   origin_ = trial_;
-  FindLeastStiffDirection();
-  return TryBeside(1) || TryBeside(-1);
+  branch_.FindSoftMotion(&soft_);
+  return TryBeside(kBeside) || TryBeside(-kBeside);
 }
 
 /// trial_ is beyond a singular pose. Where the soft motion leads across it, the hand's poses are
@@ -359,11 +283,11 @@ bool HandTracker::OffsetFromSingularity() noexcept {
 /// side has no other pose for the hand, and the way on is a smooth one; trial_ stays.
 HandTracker::Beyond HandTracker::FindMirrorImage() noexcept {
   origin_ = trial_;
-  const double beyond = determinant_;
-  FindLeastStiffDirection();
-  TryBeside(1);
-  const double size = -2 * beyond / (determinant_ - beyond);
-  if (std::abs(size) * kBeside <= options_.max_move) {
+  const double beyond = branch_.value();
+  branch_.FindSoftMotion(&soft_);
+  TryBeside(kBeside);
+  const double size = -2 * kBeside * beyond / (branch_.value() - beyond);
+  if (std::abs(size) <= options_.max_move) {
     return TryBeside(size) ? Beyond::kTurningBack : Beyond::kUnknown;
   }
   trial_ = origin_;
@@ -384,12 +308,12 @@ bool HandTracker::WithinLimits() const noexcept {
 void HandTracker::ComputeCurvature(MatrixXd* S) noexcept {
   problem_.Curvature(q_, good_multipliers_, S);
   *S *= problem_.energy();
-  for (Eigen::Index k = 0; k < unseen_.cols(); ++k) {
-    const auto n = unseen_.col(k);
-    step_ = S->lazyProduct(n);
-    const double along = n.dot(step_);
-    S->noalias() -= step_.lazyProduct(n.transpose());
-    S->noalias() -= n.lazyProduct(step_.transpose());
+  for (Eigen::Index k = 0; k < branch_.unseen().cols(); ++k) {
+    const auto n = branch_.unseen().col(k);
+    dq_ = S->lazyProduct(n);
+    const double along = n.dot(dq_);
+    S->noalias() -= dq_.lazyProduct(n.transpose());
+    S->noalias() -= n.lazyProduct(dq_.transpose());
     S->noalias() += along * n.lazyProduct(n.transpose());
   }
 }
@@ -407,19 +331,11 @@ void HandTracker::MoveToTrial() noexcept {
   at_q_ = true;
   summary_.worst_closure = std::max(summary_.worst_closure, at_trial_.c.lpNorm<Eigen::Infinity>());
   const double behind = (q_ - q_reference_).cwiseAbs().maxCoeff();
-  const bool near = determinant_ * std::exp(log_reference_ - log_best_) < kReferenceNear;
-  const bool passed = determinant_ < 0;  // Beyond::kPassable
-  if (passed || behind > (near ? kReferenceRange : kReferenceBehind)) SetReference();
-}
-
-/// The last good pose becomes the reference.
-void HandTracker::SetReference() noexcept {
+  const double most = branch_.IsNearDeadCentre() ? kReferenceRange : kReferenceBehind;
+  const bool passed = branch_.value() < 0;  // Beyond::kPassable
+  if (!passed && behind <= most) return;
   q_reference_ = q_;
-  A_reference_ = A_;
-  unseen_reference_ = unseen_;
-  log_reference_ = 0;
-  log_reference_ = std::log(BranchDeterminant());
-  log_best_ = std::max(log_best_, log_reference_);
+  branch_.SetReference();
 }
 
 TrackStatus HandTracker::Hold(TrackStatus why) noexcept {

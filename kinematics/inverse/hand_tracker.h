@@ -1,10 +1,9 @@
 #pragma once
 
-#include <Eigen/Cholesky>
-#include <limits>
 #include <string>
 #include <string_view>
 
+#include "vmech/kinematics/inverse/branch_determinant.h"
 #include "vmech/kinematics/inverse/inverse_kinematics.h"
 #include "vmech/solvers/augmented_lagrangian.h"
 
@@ -66,17 +65,13 @@ struct TrackSummary {
 /// target takes a few steps of the penalty method with multiplier update (augmented_lagrangian.h)
 /// from the pose and the multipliers of the last.
 ///
-/// Branch: with A = [J; C] of hand error and loops, det(A'A_ref) is, but for a positive
-/// factor, the product of the determinants of the reduced Jacobian J N (N the free motions) here
-/// and at a good pose shortly before. It keeps its sign while poses follow each other on one
-/// branch, and vanishes at a dead centre: where the hand cannot move the mechanism, or the loops do
-/// not determine it. Beyond a dead centre that folds the hand's poses, each of them is reached from
-/// both sides: the one on this side is taken, and without one the last good pose is held. At a dead
-/// centre the mechanism stands 2 mrad beside it, on its side, until the hand comes back. So a
-/// parallelogram that is stretched out stays so: both ways on are as good. A singular pose that
-/// folds nothing (the outer axes of a wrist in line) is passed straight through. Motions that
-/// neither hand nor loops see at any pose (unseen_motions.h: a rod that spins, an elbow that
-/// circles) have no part in the determinant, and are left at rest but for rounding.
+/// Branch: the sign of BranchDeterminant. Beyond a dead centre that folds the hand's poses, each of
+/// them is reached from both sides: the one on this side is taken, and without one the last good
+/// pose is held. At a dead centre the mechanism stands 2 mrad beside it, on its side, until the
+/// hand comes back. So a parallelogram that is stretched out stays so: both ways on are as good. A
+/// singular pose that folds nothing (the outer axes of a wrist in line) is passed straight through.
+/// Motions that neither hand nor loops see at any pose (unseen_motions.h: a rod that spins, an
+/// elbow that circles) have no part in the determinant, and are left at rest but for rounding.
 class HandTracker {
  public:
   /// Keeps a reference to the tree. q is a closed pose (Assemble).
@@ -122,10 +117,6 @@ class HandTracker {
   TrackStatus Judge() noexcept;
   bool IsClosed() const noexcept;
   void Close() noexcept;
-  void StackJacobians() noexcept;
-  double BranchDeterminant() noexcept;
-  void AddUnseen(const MatrixXd& N) noexcept;
-  void FindLeastStiffDirection() noexcept;
   bool TryBeside(double size) noexcept;
   bool OffsetFromSingularity() noexcept;
   Beyond FindMirrorImage() noexcept;
@@ -133,7 +124,6 @@ class HandTracker {
   TrackStatus Accept(Progress progress) noexcept;
   TrackStatus Hold(TrackStatus why) noexcept;
   void MoveToTrial() noexcept;
-  void SetReference() noexcept;
 
   InverseKinematics problem_;
   Closing closing_;
@@ -142,17 +132,10 @@ class HandTracker {
   TrackOptions options_;
   VectorXd q_, trial_, good_multipliers_;
   Linearization at_trial_;
-  bool at_q_ = false;     // at_trial_ is of the last good pose
-  MatrixXd A_, product_;  // [J; C; 0] at trial_, whole registers; A'A_ref
-  VectorXd q_reference_;  // an earlier good pose, at a distance from dead centres
-  MatrixXd A_reference_;
-  MatrixXd unseen_, unseen_reference_;  // N, orthonormal, at trial_ and at the reference
-  double unseen_weight_ = 0;            // of N N' beside A'A
-  double log_reference_ = 0;            // log det(A_ref'A_ref)
-  double log_best_ = -std::numeric_limits<double>::infinity();  // the largest so far
-  double determinant_ = 1;                                      // BranchDeterminant() at trial_
-  Eigen::LDLT<MatrixXd> normal_;
-  VectorXd step_, dq_, origin_;  // a soft motion, and where it starts
+  bool at_q_ = false;  // at_trial_ is of the last good pose
+  BranchDeterminant branch_;
+  VectorXd q_reference_;  // its reference, an earlier good pose at a distance from dead centres
+  VectorXd soft_, dq_, origin_;  // the soft motion, a multiple of it, and where that starts
   TrackSummary summary_;
 };
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "vmech/base/printable_text.h"
+#include "vmech/base/text/printable_text.h"
 #include "vmech/mechanisms/files/yaml/explain_yaml.h"
 #include "vmech/mechanisms/files/yaml/parse_yaml.h"
 #include "vmech/mechanisms/files/yaml/scalar_text.h"

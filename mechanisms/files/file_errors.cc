@@ -7,7 +7,7 @@
 #include <fstream>
 #include <numeric>
 
-#include "vmech/base/printable_text.h"
+#include "vmech/base/text/printable_text.h"
 
 namespace vmech {
 namespace {

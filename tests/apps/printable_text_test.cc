@@ -1,4 +1,4 @@
-#include "vmech/base/printable_text.h"
+#include "vmech/base/text/printable_text.h"
 
 #include <gtest/gtest.h>
 

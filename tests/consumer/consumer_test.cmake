@@ -36,13 +36,13 @@ set(same_layout "./every_class > layout.txt && cmp layout.txt ../plain/layout.tx
 set(study ${PROJECT_SOURCE_DIR}/mechanisms/examples/four-bar-study.yaml)
 set(run "./consumer ${study} ${packages} && ${same_layout}")
 vmech_add_consumer(plain ${CMAKE_CURRENT_LIST_DIR} -O2 "${run}")
-vmech_add_consumer(avx2 ${CMAKE_CURRENT_LIST_DIR} "-O2 -march=x86-64-v3" "${run}")
-vmech_add_consumer(native ${CMAKE_CURRENT_LIST_DIR} "-O2 -march=native" "${run}")
+# Where nothing is inlined, the linker takes one of the two versions of every function of a header.
+vmech_add_consumer(native ${CMAKE_CURRENT_LIST_DIR} "-O0 -march=native" "${run}")
 # The sanitizer's dlopen looks where the sanitizer's own library says, but for the older RPATH.
 vmech_add_consumer(address_sanitizer ${CMAKE_CURRENT_LIST_DIR}
                    "-O1 -g1 -fsanitize=address -Wl,--disable-new-dtags" "${run}")
 set_tests_properties(consumer.plain PROPERTIES FIXTURES_SETUP layout_of_plain COST 100)
-foreach(name avx2 native address_sanitizer)
+foreach(name native address_sanitizer)
   set_tests_properties(consumer.${name} PROPERTIES
     FIXTURES_REQUIRED "vmech_installation;layout_of_plain")
 endforeach()

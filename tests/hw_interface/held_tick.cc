@@ -16,8 +16,7 @@ constexpr int kSamples = 2000;
 /// What the hand does when the device exerts nothing.
 std::vector<MasterState> Wandering(DeviceInfo* device) {
   SimulatedMasterOptions options;
-  options.motion = Wander(
-      ArmModel(std::make_shared<const ArmDescription>(SarcosMasterArm())).X_DH(), 0.04, 0.15, 2);
+  options.motion = WanderingHand();
   SimulatedMaster master(options);
   master.Configure();
   master.Activate();
@@ -27,9 +26,15 @@ std::vector<MasterState> Wandering(DeviceInfo* device) {
   return samples;
 }
 
-/// And the safety that goes with it.
-std::unique_ptr<Tick> MakeTick(const KinematicTree& tree, int grasp, const DeviceInfo& device,
-                               Architecture architecture, SafetyOptions* safety) {
+}  // namespace
+
+HandMotion WanderingHand() {
+  const ArmModel arm(std::make_shared<const ArmDescription>(SarcosMasterArm()));
+  return Wander(arm.X_DH(), 0.04, 0.15, 2);
+}
+
+std::unique_ptr<Tick> ChosenTick(const KinematicTree& tree, int grasp, const DeviceInfo& device,
+                                 Architecture architecture, SafetyOptions* safety) {
   const VectorXd q = ClosedStart(tree);
   if (architecture == Architecture::kPaper) {
     const PaperChoice choice = ChoosePaper({}, tree, grasp, q, device);
@@ -45,8 +50,6 @@ std::unique_ptr<Tick> MakeTick(const KinematicTree& tree, int grasp, const Devic
   return std::make_unique<CoupledTick>(tree, grasp, q, device.period, options);
 }
 
-}  // namespace
-
 HeldTick::HeldTick(const std::string& example, Architecture architecture)
     : samples_(Wandering(&device_)) {
   const Mechanism mechanism = Example(example);
@@ -54,7 +57,7 @@ HeldTick::HeldTick(const std::string& example, Architecture architecture)
   tree_ = std::make_unique<KinematicTree>(BuildKinematicTree(mechanism));
   observer_ = std::make_unique<HandObserver>(HandObserverOptions{}, device_);
   SafetyOptions safety;
-  tick_ = MakeTick(*tree_, grasp, device_, architecture, &safety);
+  tick_ = ChosenTick(*tree_, grasp, device_, architecture, &safety);
   safety.soft_start = 0;
   safety.energy_trip = 100;  // the hand is stronger than any force
   safety_ = std::make_unique<SafetyFilter>(safety, device_);
@@ -109,16 +112,6 @@ void HeldTick::Resolve() {
   torques_->Resolve(NextSample(), true, &command_);
 }
 
-TripleBuffer<TickPicture>* HeldTick::Show() {
-  TickPicture picture;
-  picture.q = ClosedStart(*tree_);
-  picture.joints.resize(tree_->mechanism.joints.size());
-  auto shown = std::make_unique<ShownTick>(std::move(tick_), picture);
-  TripleBuffer<TickPicture>* pictures = &shown->pictures();
-  tick_ = std::move(shown);
-  return pictures;
-}
-
 /// The hand of the samples goes its way whatever it feels: as if the arm exerted nothing.
 void HeldTick::ObserveOn(const MasterState& state) {
   if (!tick_->UsesObservedHand()) return;
@@ -136,7 +129,7 @@ void HeldTick::StepOn(const MasterState& state) {
   } else {
     input.X_WH = registration_.HandInWorld(state.X_DH);
   }
-  wanted_ = tick_->Step(input, channels_);
+  tick_->StepHands({&input, 1}, {&wanted_, 1}, channels_);
 }
 
 void HeldTick::FilterOf(const MasterState& state) {

@@ -7,23 +7,30 @@
 #include "vmech/base/nonblocking.h"
 #include "vmech/hw_interface/estimation/hand_observer.h"
 #include "vmech/hw_interface/loop/arm_torques.h"
+#include "vmech/hw_interface/masters/operator_model.h"
 #include "vmech/hw_interface/rendering/coupled_tick.h"
 #include "vmech/hw_interface/rendering/mechanism_tick.h"
 #include "vmech/hw_interface/rendering/registration.h"
 #include "vmech/hw_interface/safety/safety_filter.h"
-#include "vmech/hw_interface/screen/shown_tick.h"
 
 namespace vmech {
 
-/// A mechanism of the examples in the hand of an operator who wanders a few centimetres at a
-/// simulated 7-joint arm with 16-bit encoders: the tick on the samples of that arm, whose own
-/// simulation costs nothing here. The hand goes its way whatever the mechanism allows, so that it
-/// pulls on the constraints all the time.
 enum class Architecture {
   kCoupled,  ///< CoupledTick
   kPaper,    ///< MechanismTick
 };
 
+/// As `vmech haptic` chooses it for the device, and the safety that goes with it.
+std::unique_ptr<Tick> ChosenTick(const KinematicTree& tree, int grasp, const DeviceInfo& device,
+                                 Architecture architecture, SafetyOptions* safety);
+
+/// An operator who wanders a few centimetres about the handle's start.
+HandMotion WanderingHand();
+
+/// A mechanism of the examples in the hand of an operator who wanders a few centimetres at a
+/// simulated 7-joint arm with 16-bit encoders: the tick on the samples of that arm, whose own
+/// simulation costs nothing here. The hand goes its way whatever the mechanism allows, so that it
+/// pulls on the constraints all the time.
 class HeldTick {
  public:
   HeldTick(const std::string& example, Architecture architecture);
@@ -36,9 +43,6 @@ class HeldTick {
   void Step();
   void Filter();
   void Resolve();
-
-  /// From now on a screen may look at it, through what is returned.
-  TripleBuffer<TickPicture>* Show();
 
   /// Why the safety filter lets no force through, if it does not.
   ForceOff force_off() const { return force_off_; }

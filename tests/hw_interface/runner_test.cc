@@ -186,6 +186,38 @@ TEST(Runner, RecordsEveryTick) {
   EXPECT_THROW(endless.Validate(), std::invalid_argument);
 }
 
+/// A page that comes late, and again much later.
+class LookingClock : public FreeRunningClock {
+ public:
+  Runner* runner = nullptr;
+  std::vector<double> forces;  // as it saw them [N]
+  void SleepUntil(std::int64_t time_ns) noexcept override {
+    FreeRunningClock::SleepUntil(time_ns);
+    const std::uint64_t ticks = runner->live().ticks;
+    if (ticks % 500 != 3 && ticks % 500 != 5) return;
+    if (runner->pictures().Take()) forces.push_back(runner->pictures().front().F_Ho_W.x());
+  }
+};
+
+TEST(Runner, ShowsTheFirstTickThatIsOverWhenThePictureHasBeenTaken) {
+  PointMaster master(PointOptions{});
+  master.Configure();
+  SpringTick tick(100);
+  tick.anchor.x() = 0.01;
+  LookingClock clock;
+  RunnerOptions options = Quick(1);
+  options.record = true;
+  Runner runner(options, &master, &tick, &clock);
+  clock.runner = &runner;
+  runner.Run();
+  std::vector<double> expected;
+  for (const size_t slot : {0, 3, 5, 503}) {
+    expected.push_back(runner.Kept().ticks[slot].picture.F_Ho_W.x());
+  }
+  EXPECT_EQ(clock.forces, expected);
+  EXPECT_NE(expected[0], expected[1]);
+}
+
 TEST(Runner, EverySlotOfTheGridIsTickedOrCountedAsSkipped) {
   PointMaster master(PointOptions{});
   master.Configure();

@@ -11,8 +11,7 @@
 #include <thread>
 
 #include "support/examples.h"
-#include "vmech/hw_interface/screen/shown_tick.h"
-#include "vmech/hw_interface/screen/triple_buffer.h"
+#include "vmech/base/triple_buffer.h"
 #include "vmech/kinematics/loops/assembled_mechanism.h"
 
 namespace vmech::screen_mechanism_test {

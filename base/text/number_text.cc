@@ -1,4 +1,4 @@
-#include "vmech/base/number_text.h"
+#include "vmech/base/text/number_text.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "vmech/base/encoding/base64.h"
+#include "vmech/base/text/base64.h"
 
 #include <algorithm>
 #include <cstdint>
