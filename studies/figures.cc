@@ -3,16 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
-#include <span>
 #include <stdexcept>
 #include <utility>
 
-#include "vmech/dynamics/bearings/life_slope.h"
-#include "vmech/dynamics/bearings/rating_life.h"
 #include "vmech/dynamics/loads/load_peaks.h"
 #include "vmech/dynamics/loads/motion/transmission_angle.h"
 #include "vmech/dynamics/loads/open_components.h"
@@ -23,163 +18,6 @@ namespace vmech {
 namespace {
 
 constexpr std::array<const char*, 6> kComponents{"fx", "fy", "fz", "mx", "my", "mz"};
-
-Dual Size(const Dual* v) {
-  return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
-/// The moment about the axes that a joint does not leave free: without what its drive exerts.
-Dual HeldMoment(JointType type, const Dual* moment) {
-  const std::array<bool, 6>& free = FreedomsOfType(type).free;
-  Dual held[3];
-  for (int k = 0; k < 3; ++k) held[k] = free[3 + k] ? Dual(0) : moment[k];
-  return Size(held);
-}
-
-/// From where a study wants a grasp at a pose.
-Dual DistanceFromPath(const WantedPath& path, const LoadDerivatives& loads, size_t i) {
-  const size_t grasps = loads.grasps.size() / loads.poses() / 3;
-  const Dual* p = &loads.grasps[3 * (i * grasps + static_cast<size_t>(path.grasp))];
-  const Vector3d& wanted = path.points[static_cast<size_t>(loads.pose_number(i))];
-  const Dual d[] = {p[0] - wanted.x(), p[1] - wanted.y(), p[2] - wanted.z()};
-  return Size(d);
-}
-
-/// pi/2 - mu, in degrees.
-Dual TransmissionDeviation(const std::array<int, 4>& joints, const Mechanism& mechanism,
-                           const LoadDerivatives& loads, size_t i) {
-  constexpr double kDegree = std::numbers::pi / 180;
-  PlanarLoop<Dual> loop;
-  for (size_t k = 0; k < joints.size(); ++k) {
-    const auto joint = static_cast<size_t>(joints[k]);
-    const Dual* axis = &loads.axes[6 * (i * loads.joints() + joint)];
-    loop.points[k] = Vector3<Dual>(axis[0], axis[1], axis[2]);
-    loop.axes[k] = Vector3<Dual>(axis[3], axis[4], axis[5]);
-    loop.turns[k] = mechanism.joints[joint].type == JointType::kRevolute;
-  }
-  return 90 - loop.TransmissionAngle() / kDegree;
-}
-
-/// What a figure is at one of the poses.
-Dual ValueAt(const Figure& figure, const StudyFile& file, const LoadDerivatives& loads, size_t i) {
-  const Mechanism& mechanism = file.study.mechanism;
-  const auto index = static_cast<size_t>(figure.index);
-  switch (figure.kind) {
-    case FigureKind::kForce:
-      return Size(&loads.wrenches[6 * (i * loads.joints() + index)]);
-    case FigureKind::kMoment:
-      return HeldMoment(mechanism.joints[index].type,
-                        &loads.wrenches[6 * (i * loads.joints() + index) + 3]);
-    case FigureKind::kDrive:
-      return abs(loads.drive_forces[i * loads.drive_forces.size() / loads.poses() + index]);
-    case FigureKind::kGroundForce:
-      return Size(&loads.ground_forces[3 * i]);
-    case FigureKind::kPathError:
-      return DistanceFromPath(file.paths[index], loads, i);
-    case FigureKind::kTransmission:
-      return TransmissionDeviation(figure.loop, mechanism, loads, i);
-    case FigureKind::kLife:
-    case FigureKind::kMass:
-      break;
-  }
-  return 0;
-}
-
-bool IsCourse(const Figure& figure) {
-  return figure.kind != FigureKind::kLife && figure.kind != FigureKind::kMass;
-}
-
-/// What a figure is at every pose; empty for those that are no course.
-std::vector<Dual> CourseOf(const Figure& figure, const StudyFile& file,
-                           const LoadDerivatives& loads) {
-  std::vector<Dual> course;
-  if (!IsCourse(figure)) return course;
-  for (size_t i = 0; i < loads.poses(); ++i) course.push_back(ValueAt(figure, file, loads, i));
-  return course;
-}
-
-size_t LargestAt(const std::vector<Dual>& course) {
-  return static_cast<size_t>(std::max_element(course.begin(), course.end()) - course.begin());
-}
-
-/// (mean of x^p)^(1/p), of numbers that are not negative.
-Dual PowerMean(const std::vector<Dual>& course, double power) {
-  const double largest = course[LargestAt(course)].value;
-  if (largest == 0) return 0;
-  Dual sum = 0;
-  for (const Dual& x : course) sum += pow(x / largest, power);
-  return largest * pow(sum / static_cast<double>(course.size()), 1 / power);
-}
-
-Dual Reduce(const std::vector<Dual>& course, const Figure& figure) {
-  switch (figure.reduction) {
-    case Reduction::kPeak:
-      return course[LargestAt(course)];
-    case Reduction::kSmoothPeak:
-      return PowerMean(course, figure.power) *
-             std::pow(static_cast<double>(course.size()), 1 / figure.power);
-    case Reduction::kRms:
-      return PowerMean(course, 2);
-  }
-  return 0;
-}
-
-Dual MassOf(const StudyFile& file, const StudyChange& change) {
-  Dual mass = 0;
-  for (size_t l = 0; l < change.design.links.size(); ++l) {
-    if (static_cast<int>(l) != file.study.mechanism.ground) mass += change.design.links[l].mass;
-  }
-  return mass;
-}
-
-/// How long each pose stands for, as DutyCycle::duration.
-std::vector<Dual> DurationsOf(const LoadStudy& study, const StudyChange& change,
-                              const std::vector<Dual>& times) {
-  const size_t poses = times.size();
-  if (study.cycle > 0) {
-    return std::vector<Dual>(poses, Dual(study.cycle, change.cycle) / static_cast<double>(poses));
-  }
-  if (poses == 1) return {Dual(1)};
-  std::vector<Dual> durations(poses);
-  for (size_t i = 1; i < poses; ++i) {
-    const Dual half = 0.5 * (times[i] - times[i - 1]);
-    durations[i - 1] += half;
-    durations[i] += half;
-  }
-  return durations;
-}
-
-DutySlopes DutyOf(int joint, const StudyFile& file, const StudyChange& change,
-                  const LoadDerivatives& loads) {
-  const int turn = TurnAboutAxis(file.study.mechanism.joints[joint].type);
-  const auto freedoms = static_cast<size_t>(loads.first_freedom.back());
-  const auto at = static_cast<size_t>(loads.first_freedom[joint] + turn);
-  DutySlopes duty;
-  duty.duration = DurationsOf(file.study, change, loads.times);
-  for (size_t i = 0; i < loads.poses(); ++i) {
-    const Dual* w = &loads.wrenches[6 * (i * loads.joints() + static_cast<size_t>(joint))];
-    duty.speed.push_back(loads.rates[i * freedoms + at]);
-    duty.wrench.push_back({{w[0], w[1], w[2]}, {w[3], w[4], w[5]}});
-  }
-  return duty;
-}
-
-Dual LifeOf(const Figure& figure, const StudyFile& file, const StudyOutcome& outcome,
-            const StudyChange& change, const LoadDerivatives& loads) {
-  const auto at = static_cast<size_t>(figure.index);
-  const BearingRequest& request = file.bearings[at];
-  const DutySlopes duty = DutyOf(request.joint, file, change, loads);
-  std::vector<BearingKind> kinds;
-  std::vector<Dual> lives;
-  const std::vector<BearingSelection>& selections = outcome.bearings[at].bearings.selections;
-  for (size_t k = 0; k < selections.size(); ++k) {
-    const Bearing& bearing = selections[k].best()->bearing;
-    kinds.push_back(bearing.kind);
-    lives.push_back(
-        LifeHours(bearing, request.arrangement, k, duty, request.requirements.reliability));
-  }
-  return SystemLife(std::span<const Dual>(lives), WeibullSlope(kinds));
-}
 
 std::string NameWith(const std::string& name, const char* quantity) {
   return fmt::format("{}.{}", name, quantity);
@@ -198,9 +36,8 @@ void AddJointFigures(const StudyFile& file, const StudyOutcome& outcome,
       figures->push_back(
           {FigureKind::kForce, index, Reduction::kPeak, NameWith(name, "force"), "N"});
     }
-    Dual moment[3];
-    for (int k = 0; k < 3; ++k) moment[k] = peaks.components[j][3 + k];
-    if (HeldMoment(mechanism.joints[j].type, moment).value > kNothing * peaks.force * length) {
+    const double moment = HeldMoment(mechanism.joints[j].type, &peaks.components[j][3]);
+    if (moment > kNothing * peaks.force * length) {
       figures->push_back(
           {FigureKind::kMoment, index, Reduction::kPeak, NameWith(name, "moment"), "N m"});
     }
@@ -258,6 +95,10 @@ void AddOpen(const StudyOutcome& outcome, size_t joint, size_t first, size_t las
 
 }  // namespace
 
+bool IsCourse(const Figure& figure) {
+  return figure.kind != FigureKind::kLife && figure.kind != FigureKind::kMass;
+}
+
 std::vector<Figure> FiguresOf(const StudyFile& file, const StudyOutcome& outcome) {
   std::vector<Figure> figures;
   AddJointFigures(file, outcome, &figures);
@@ -312,36 +153,6 @@ std::string NotDeterminedIn(const Figure& figure, const StudyFile& file,
       break;
   }
   return fmt::format("{}", fmt::join(open, ", "));
-}
-
-std::vector<size_t> PosesThatMatter(const Figure& figure, const StudyFile& file,
-                                    const LoadDerivatives& all) {
-  // Of the largest: what is lost in the sum of the powers.
-  const double lost = std::pow(1e-19, 1 / figure.power);
-  const std::vector<Dual> course = CourseOf(figure, file, all);
-  std::vector<size_t> poses;
-  if (figure.kind == FigureKind::kMass) return poses;
-  const size_t peak = course.empty() ? 0 : LargestAt(course);
-  for (size_t i = 0; i < all.poses(); ++i) {
-    const bool whole = course.empty() || figure.reduction == Reduction::kRms;
-    const bool near_peak =
-        figure.reduction == Reduction::kSmoothPeak && course[i].value > lost * course[peak].value;
-    if (whole || near_peak || i == peak) poses.push_back(i);
-  }
-  return poses;
-}
-
-Dual ValueOf(const Figure& figure, const StudyFile& file, const StudyOutcome& outcome,
-             const StudyChange& change, const LoadDerivatives& loads) {
-  if (figure.kind == FigureKind::kMass) return MassOf(file, change);
-  if (figure.kind == FigureKind::kLife) return LifeOf(figure, file, outcome, change, loads);
-  return Reduce(CourseOf(figure, file, loads), figure);
-}
-
-int PeakPose(const Figure& figure, const StudyFile& file, const LoadDerivatives& loads) {
-  const std::vector<Dual> course = CourseOf(figure, file, loads);
-  if (course.empty() || figure.reduction != Reduction::kPeak) return -1;
-  return static_cast<int>(LargestAt(course));
 }
 
 }  // namespace vmech

@@ -1,10 +1,11 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
-#include "vmech/dynamics/sensitivity/load_derivatives.h"
+#include "vmech/mechanisms/freedoms.h"
 #include "vmech/studies/study.h"
 
 namespace vmech {
@@ -54,19 +55,24 @@ Figure FindFigure(const std::vector<Figure>& known, const std::string& name);
 std::string NotDeterminedIn(const Figure& figure, const StudyFile& file,
                             const StudyOutcome& outcome);
 
-/// The poses of a study on which a figure and its derivative depend, in order: of a peak the one
-/// that has it, of a smooth peak those that are not lost in its rounding. `all`: the loads at every
-/// pose.
-std::vector<size_t> PosesThatMatter(const Figure& figure, const StudyFile& file,
-                                    const LoadDerivatives& all);
+/// The length of a vector of three.
+template <typename T>
+T VectorSize(const T* v) {
+  using std::sqrt;
+  return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
 
-/// The figure and its derivative by the parameter of `change`, per unit of it. `loads` are those
-/// that belong to it, at all poses or at those that matter. Bearings are those that `outcome`
-/// chose.
-Dual ValueOf(const Figure& figure, const StudyFile& file, const StudyOutcome& outcome,
-             const StudyChange& change, const LoadDerivatives& loads);
+/// The size of the moment about the axes that a joint does not leave free: without what its drive
+/// exerts.
+template <typename T>
+T HeldMoment(JointType type, const T* moment) {
+  const std::array<bool, 6>& free = FreedomsOfType(type).free;
+  T held[3];
+  for (int k = 0; k < 3; ++k) held[k] = free[3 + k] ? T(0) : moment[k];
+  return VectorSize(held);
+}
 
-/// The pose at which a peak is reached, among those of `loads`; -1 for what is no peak.
-int PeakPose(const Figure& figure, const StudyFile& file, const LoadDerivatives& loads);
+/// Has it a history over the poses, of which it is the peak or the mean?
+bool IsCourse(const Figure& figure);
 
 }  // namespace vmech

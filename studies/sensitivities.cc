@@ -1,15 +1,25 @@
 #include "vmech/studies/sensitivities.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
+#include <exception>
+#include <functional>
 #include <limits>
+#include <mutex>
 #include <set>
 #include <stdexcept>
 #include <thread>
 #include <utility>
 
 #include "vmech/dynamics/loads/track_motion.h"
+#include "vmech/dynamics/sensitivity/load_derivatives.h"
+#include "vmech/dynamics/sensitivity/load_gradient.h"
 #include "vmech/dynamics/sensitivity/motion_part.h"
+#include "vmech/studies/figure_values.h"
 
 namespace vmech {
 namespace {
@@ -18,14 +28,34 @@ constexpr double kStep = 1e-3;  // of a parameter's scale, for the slopes of the
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// Poses at which loops are seen to stay closed, whatever else matters.
-std::set<size_t> SpreadPoses(size_t poses) {
+std::vector<size_t> SpreadPoses(size_t poses) {
   constexpr size_t kSpread = 8;
   std::set<size_t> spread;
   for (size_t k = 0; k < kSpread; ++k) spread.insert(k * poses / kSpread);
-  return spread;
+  return {spread.begin(), spread.end()};
 }
 
-/// The study with one parameter after the other.
+/// Calls work(0), work(1), .. work(count - 1), divided among threads.
+void Share(size_t count, int threads, const std::function<void(size_t)>& work) {
+  std::atomic<size_t> next{0};
+  std::mutex mutex;
+  std::exception_ptr error;
+  const auto take = [&] {
+    try {
+      for (size_t k; (k = next.fetch_add(1)) < count;) work(k);
+    } catch (...) {
+      const std::scoped_lock lock(mutex);
+      error = std::current_exception();
+    }
+  };
+  std::vector<std::thread> helpers;
+  for (int i = 1; i < threads; ++i) helpers.emplace_back(take);
+  take();
+  for (std::thread& helper : helpers) helper.join();
+  if (error) std::rethrow_exception(error);
+}
+
+/// The study with its parameters.
 class Differentiator {
  public:
   Differentiator(const StudyFile& file, const StudyOutcome& outcome, Sensitivities* result)
@@ -37,48 +67,136 @@ class Differentiator {
 
   const LoadModel& model() const { return prepared_.model; }
 
-  /// The values of the figures, which depend on no parameter.
-  void Evaluate() {
-    const StudyChange still = ChangeOfStudy(
-        prepared_, motion_, [this](double) { return file_.study; }, 0, 1);
-    const LoadDerivatives loads = DifferentiateLoads(prepared_, motion_, still);
-    std::set<size_t> poses = SpreadPoses(motion_.size());
-    for (FigureSlopes& f : result_.figures) {
-      f.value = ValueOf(f.figure, file_, outcome_, still, loads).value;
-      f.pose = PeakPose(f.figure, file_, loads);
-      if (f.slopes.empty()) continue;
-      for (const size_t pose : PosesThatMatter(f.figure, file_, loads)) poses.insert(pose);
-    }
-    if (poses.size() == motion_.size()) return;
-    poses_.assign(poses.begin(), poses.end());
-    motion_ = PartOf(motion_, poses_);
+  void Run(int threads) {
+    Evaluate();
+    changes_.resize(result_.parameters.size());
+    requests_.resize(changes_.size());
+    Share(changes_.size(), threads, [this](size_t p) { Change(p); });
+    if (!gradients()) return;
+    LeaveOutRefused();
+    if (changes_.empty()) return;
+    Share(result_.figures.size(), threads, [this](size_t f) { TakeGradient(f); });
   }
 
-  void Differentiate(size_t p) {
+ private:
+  bool gradients() const { return LoadGradients::Exist(model(), motion_); }
+
+  /// The values of the figures, and at which poses they depend on the loads.
+  void Evaluate() {
+    const LoadRows<double> loads = EvaluateLoads(prepared_, motion_);
+    FigureValues figures(file_, outcome_, loads);
+    const std::vector<size_t> spread = SpreadPoses(motion_.size());
+    std::set<size_t> poses(spread.begin(), spread.end());
+    for (FigureSlopes& f : result_.figures) {
+      values_.push_back(figures.Of(f.figure, !f.slopes.empty()));
+      f.value = values_.back().value;
+      f.pose = values_.back().pose;
+      poses.insert(values_.back().by_loads.poses.begin(), values_.back().by_loads.poses.end());
+    }
+    if (poses.size() < motion_.size()) TakePart({poses.begin(), poses.end()});
+    for (const size_t pose : spread) spread_.push_back(PlaceOf(pose));
+  }
+
+  void TakePart(std::vector<size_t> poses) {
+    poses_ = std::move(poses);
+    motion_ = PartOf(motion_, poses_);
+    for (FigureValue& value : values_) {
+      for (size_t& pose : value.by_loads.poses) pose = PlaceOf(pose);
+    }
+  }
+
+  /// Of a pose of the study in `motion_`.
+  size_t PlaceOf(size_t pose) const {
+    if (poses_.empty()) return pose;
+    return static_cast<size_t>(std::lower_bound(poses_.begin(), poses_.end(), pose) -
+                               poses_.begin());
+  }
+
+  /// How the study goes with a parameter; and the figures, where the loads have no gradient.
+  void Change(size_t p) {
     try {
       const StudyParameter& parameter = result_.parameters[p];
+      const double step = kStep * parameter.scale;
+      std::array<std::vector<double>, 5> requests;
+      size_t calls = 0;
       const auto at = [&](double value) {
         StudyFile changed = file_;
         parameter.put(value, &changed);
-        TakePart(&changed.study);
+        requests[calls++] = RequestNumbers(changed);
+        LeavePart(&changed.study);
         return std::move(changed.study);
       };
-      StudyChange change =
-          ChangeOfStudy(prepared_, motion_, at, parameter.value, kStep * parameter.scale);
-      change.pose_numbers = poses_;
-      const LoadDerivatives loads = DifferentiateLoads(prepared_, motion_, change);
-      for (FigureSlopes& f : result_.figures) {
-        if (f.slopes.empty()) continue;
-        f.slopes[p] = ValueOf(f.figure, file_, outcome_, change, loads).slope;
+      changes_[p] = ChangeOfStudy(prepared_, motion_, at, parameter.value, step);
+      changes_[p].pose_numbers = poses_;
+      RequireSameForm(requests);
+      RequireSameShares(changes_[p]);
+      requests_[p] = FivePointSlopes(requests, step);
+      if (gradients()) {
+        DifferentiateLoads(prepared_, motion_, changes_[p], spread_);  // throws where a loop opens
+      } else {
+        TakeSlopes(p, DifferentiateLoads(prepared_, motion_, changes_[p]));
       }
     } catch (const std::exception& error) {
       result_.refusals[p] = error.what();
     }
   }
 
- private:
+  void RequireSameForm(const std::array<std::vector<double>, 5>& requests) const {
+    for (const std::vector<double>& numbers : requests) {
+      if (numbers.size() == RequestNumbers(file_).size()) continue;
+      throw std::invalid_argument(
+          "a parameter that changes how many bearings or points there are has no derivative");
+    }
+  }
+
+  /// What statics leaves open goes by stiffnesses, whose slopes are not taken along.
+  void RequireSameShares(const StudyChange& change) const {
+    if (!change.shares || model().rule != ReactionRule::kStiffness) return;
+    for (const FigureSlopes& f : result_.figures) {
+      if (f.slopes.empty() || f.not_determined.empty()) continue;
+      throw std::invalid_argument(
+          fmt::format("it changes stiffnesses, by which the rule settles what statics does not "
+                      "determine of {}: that has no derivative here",
+                      f.figure.name));
+    }
+  }
+
+  void TakeSlopes(size_t p, const LoadRows<Dual>& loads) {
+    for (size_t f = 0; f < values_.size(); ++f) {
+      if (result_.figures[f].slopes.empty()) continue;
+      double slope = SlopeBesideLoads(values_[f], changes_[p], requests_[p]);
+      const LoadRows<double>& by_loads = values_[f].by_loads;
+      for (size_t i = 0; i < by_loads.poses.size(); ++i) {
+        for (size_t k = 0; k < loads.layout.width(); ++k) {
+          slope += by_loads.row(i)[k] * loads.row(by_loads.poses[i])[k].slope;
+        }
+      }
+      result_.figures[f].slopes[p] = slope;
+    }
+  }
+
+  void LeaveOutRefused() {
+    for (size_t p = 0; p < changes_.size(); ++p) {
+      if (!result_.refusals[p].empty()) continue;
+      if (varied_.size() < p) changes_[varied_.size()] = std::move(changes_[p]);
+      varied_.push_back(p);
+    }
+    changes_.resize(varied_.size());
+  }
+
+  void TakeGradient(size_t f) {
+    if (result_.figures[f].slopes.empty()) return;
+    LoadGradients gradients(prepared_, motion_, changes_);
+    const StudyGradient gradient = gradients.Of(values_[f].by_loads);
+    for (size_t k = 0; k < varied_.size(); ++k) {
+      result_.figures[f].slopes[varied_[k]] =
+          SlopeBesideLoads(values_[f], changes_[k], requests_[varied_[k]]) +
+          SlopeAlong(changes_[k], gradient, model(), motion_);
+    }
+  }
+
   /// Leaves a study the poses of `motion_`. One that has others altogether is left alone.
-  void TakePart(LoadStudy* study) const {
+  void LeavePart(LoadStudy* study) const {
     if (poses_.empty() || study->times.size() != file_.study.times.size()) return;
     std::vector<double> times;
     for (const size_t pose : poses_) times.push_back(study->times[pose]);
@@ -89,8 +207,13 @@ class Differentiator {
   const StudyOutcome& outcome_;
   Sensitivities& result_;
   const PreparedStudy prepared_;
-  Motion motion_;              // at the poses that matter,
-  std::vector<size_t> poses_;  // which are these; all if there are none
+  Motion motion_;                     // at the poses that matter,
+  std::vector<size_t> poses_;         // which are these; all if there are none
+  std::vector<size_t> spread_;        // of motion_, those at which loops are seen to stay closed
+  std::vector<FigureValue> values_;   // [figures]
+  std::vector<StudyChange> changes_;  // by parameter, in the end by those in
+  std::vector<size_t> varied_;        // which have derivatives
+  std::vector<std::vector<double>> requests_;  // [parameters] slopes of RequestNumbers
 };
 
 }  // namespace
@@ -123,17 +246,7 @@ Sensitivities FindSensitivities(const StudyFile& file, const StudyOutcome& outco
   Differentiator differentiator(file, outcome, &result);
   const std::string reason = ReasonAgainstDerivatives(differentiator.model());
   if (!reason.empty()) throw std::invalid_argument("the study has no sensitivities: " + reason);
-  differentiator.Evaluate();
-  std::atomic<size_t> next{0};
-  const auto work = [&] {
-    for (size_t p; (p = next.fetch_add(1)) < result.parameters.size();) {
-      differentiator.Differentiate(p);
-    }
-  };
-  std::vector<std::thread> helpers;
-  for (int i = 1; i < options.threads; ++i) helpers.emplace_back(work);
-  work();
-  for (std::thread& helper : helpers) helper.join();
+  differentiator.Run(options.threads);
   return result;
 }
 

@@ -5,6 +5,7 @@
 
 #include "vmech/base/dual.h"
 #include "vmech/base/lanes4.h"
+#include "vmech/base/tape/taped4.h"
 
 namespace vmech {
 
@@ -36,7 +37,7 @@ void EnvelopeLdlt<T>::Factor() {
     const int first = first_[i];
     T* const row_i = values + row_[i];
     T pivot = row_i[i];
-    T size = abs(pivot);
+    T size = abs(Constant(pivot));
     // products_[j] = L(i,j) D(j) is what is left of A(i,j) after the columns before j.
     for (int j = first; j < i; ++j) {
       const T* const row_j = values + row_[j];
@@ -45,14 +46,15 @@ void EnvelopeLdlt<T>::Factor() {
       const T scaled = sum * inverse_pivot_[j];
       const T taken = sum * scaled;
       pivot -= taken;
-      size += abs(taken);
+      size += abs(Constant(taken));
       products_[j] = sum;
       row_i[j] = scaled;
     }
     row_i[i] = pivot;
-    const auto counts = abs(pivot) > kSingular * size;
+    const T left = abs(Constant(pivot));
+    const auto counts = left > kSingular * size;
     inverse_pivot_[i] = Select(counts, 1.0 / pivot, T(0));
-    smallest_pivot_ = min(smallest_pivot_, Select(counts, abs(pivot) / size, T(0)));
+    smallest_pivot_ = min(smallest_pivot_, Select(counts, left / size, T(0)));
   }
 }
 
@@ -76,7 +78,7 @@ void EnvelopeLdlt<T>::Solve(T* x) const {
 
 template class EnvelopeLdlt<double>;
 template class EnvelopeLdlt<Dual>;
-template class EnvelopeLdlt<Dual4>;
+template class EnvelopeLdlt<Taped4>;
 template class EnvelopeLdlt<Lanes4>;
 
 }  // namespace vmech

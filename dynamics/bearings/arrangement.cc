@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "vmech/base/dual.h"
+#include "vmech/base/tape/tape.h"
 
 namespace vmech {
 
@@ -34,20 +34,20 @@ void Arrangement::Validate() const {
 }
 
 template <typename T>
-std::array<Vector3<T>, 2> SharesOf(const Arrangement& arrangement, const Wrench<T>& wrench) {
-  const std::vector<double>& z = arrangement.positions;
+std::array<Vector3<T>, 2> SharesOf(const std::vector<T>& z, int locating, const Wrench<T>& wrench) {
   const Vector3<T>&f = wrench.force, &m = wrench.moment;
   Vector3<T> R_b = Vector3<T>::Zero();
   if (z.size() == 2) {
-    const T per_distance(1 / (z[1] - z[0]));
+    const T per_distance = T(1) / (z[1] - z[0]);
     R_b = {per_distance * (m.y() - z[0] * f.x()), per_distance * (-m.x() - z[0] * f.y()), T(0)};
   }
   Vector3<T> R_a = f - R_b;
-  if (arrangement.locating == 1) std::swap(R_a.z(), R_b.z());
+  if (locating == 1) std::swap(R_a.z(), R_b.z());
   return {R_a, R_b};
 }
-template std::array<Vector3d, 2> SharesOf<double>(const Arrangement&, const Wrenchd&);
-template std::array<Vector3<Dual>, 2> SharesOf<Dual>(const Arrangement&, const Wrench<Dual>&);
+template std::array<Vector3d, 2> SharesOf<double>(const std::vector<double>&, int, const Wrenchd&);
+template std::array<Vector3<Taped>, 2> SharesOf<Taped>(const std::vector<Taped>&, int,
+                                                       const Wrench<Taped>&);
 
 ArrangementLoads DistributeLoads(const Arrangement& arrangement,
                                  std::span<const Wrenchd> wrenches) {
@@ -57,7 +57,7 @@ ArrangementLoads DistributeLoads(const Arrangement& arrangement,
   loads.forces.assign(z.size(), std::vector<BearingForce>(wrenches.size()));
   loads.tilting_moment.assign(wrenches.size(), 0.0);
   for (size_t i = 0; i < wrenches.size(); ++i) {
-    const std::array<Vector3d, 2> shares = SharesOf(arrangement, wrenches[i]);
+    const std::array<Vector3d, 2> shares = SharesOf(z, arrangement.locating, wrenches[i]);
     for (size_t k = 0; k < z.size(); ++k) loads.forces[k][i].force = shares[k];
     if (z.size() == 2) continue;
     // m - z_a e_z x f: the moment about the only bearing.

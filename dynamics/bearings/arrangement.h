@@ -39,9 +39,11 @@ struct ArrangementLoads {
 /// With two bearings a and b: R_b.x = (m.y - z_a f.x) / (z_b - z_a),
 /// R_b.y = (-m.x - z_a f.y) / (z_b - z_a), R_a = f - R_b; the locating bearing takes all of f.z.
 /// The bearings are taken as pivots: they transmit no moment.
-/// The shares of one wrench: R_a, and R_b where there is a second bearing. T: double or Dual.
+/// The shares of one wrench: R_a, and R_b where there is a second bearing; positions and locating
+/// as in Arrangement. T: double or Taped.
 template <typename T>
-std::array<Vector3<T>, 2> SharesOf(const Arrangement& arrangement, const Wrench<T>& wrench);
+std::array<Vector3<T>, 2> SharesOf(const std::vector<T>& positions, int locating,
+                                   const Wrench<T>& wrench);
 /// The loads of each bearing at every pose, by SharesOf.
 ArrangementLoads DistributeLoads(const Arrangement& arrangement, std::span<const Wrenchd> wrenches);
 

@@ -110,7 +110,7 @@ double EquivalentDynamicLoad(const Bearing& bearing, double radial, double axial
   return DynamicLoad(bearing, radial, axial);
 }
 
-Dual EquivalentDynamicLoad(const Bearing& bearing, const Dual& radial, const Dual& axial) {
+Taped EquivalentDynamicLoad(const Bearing& bearing, const Taped& radial, const Taped& axial) {
   return DynamicLoad(bearing, radial, axial);
 }
 
@@ -124,8 +124,8 @@ double MeanEffectiveLoad(std::span<const double> loads, std::span<const double> 
   return MeanLoad(loads, revolutions, exponent);
 }
 
-Dual MeanEffectiveLoad(std::span<const Dual> loads, std::span<const Dual> revolutions,
-                       double exponent) {
+Taped MeanEffectiveLoad(std::span<const Taped> loads, std::span<const Taped> revolutions,
+                        double exponent) {
   return MeanLoad(loads, revolutions, exponent);
 }
 
@@ -133,7 +133,7 @@ double BasicRatingLife(double rating, double load, BearingKind kind) {
   return RatingLife(rating, load, kind);
 }
 
-Dual BasicRatingLife(double rating, const Dual& load, BearingKind kind) {
+Taped BasicRatingLife(double rating, const Taped& load, BearingKind kind) {
   return RatingLife(rating, load, kind);
 }
 
@@ -145,7 +145,7 @@ double HoursOf(double life, double speed) {
   return Hours(life, speed);
 }
 
-Dual HoursOf(const Dual& life, const Dual& speed) {
+Taped HoursOf(const Taped& life, const Taped& speed) {
   return Hours(life, speed);
 }
 
@@ -158,11 +158,16 @@ double ReliabilityFactor(double reliability) {
   return Interpolate(kA1, Locate(kReliability, reliability));
 }
 
+Taped ReliabilityFactor(const Taped& reliability) {
+  ReliabilityFactor(reliability.value);  // throws
+  return Interpolate(kA1, Locate(kReliability, reliability));
+}
+
 double SystemLife(std::span<const double> lives, double weibull_slope) {
   return LifeTogether(lives, weibull_slope);
 }
 
-Dual SystemLife(std::span<const Dual> lives, double weibull_slope) {
+Taped SystemLife(std::span<const Taped> lives, double weibull_slope) {
   return LifeTogether(lives, weibull_slope);
 }
 

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "vmech/base/dual.h"
+#include "vmech/base/tape/tape.h"
 #include "vmech/dynamics/bearings/bearing.h"
 
 namespace vmech {
@@ -28,7 +28,7 @@ AxialFactors DeepGrooveFactors(double relative_axial_load);
 /// from it by at most 0.7 % upwards. Never decreases with Fr or Fa. [N]
 double EquivalentDynamicLoad(const Bearing& bearing, double radial, double axial);
 /// The same with its derivatives.
-Dual EquivalentDynamicLoad(const Bearing& bearing, const Dual& radial, const Dual& axial);
+Taped EquivalentDynamicLoad(const Bearing& bearing, const Taped& radial, const Taped& axial);
 
 /// P0 = max(Fr, 0.6 Fr + 0.5 Fa) for deep groove ball bearings; P0 = Fr for cylindrical rollers.
 /// ISO 76:2006. [N]
@@ -40,13 +40,13 @@ double EquivalentStaticLoad(const Bearing& bearing, double radial, double axial)
 double MeanEffectiveLoad(std::span<const double> loads, std::span<const double> revolutions,
                          double exponent);
 /// The same with its derivatives.
-Dual MeanEffectiveLoad(std::span<const Dual> loads, std::span<const Dual> revolutions,
-                       double exponent);
+Taped MeanEffectiveLoad(std::span<const Taped> loads, std::span<const Taped> revolutions,
+                        double exponent);
 
 /// L10 = (C / P)^p in 10^6 revolutions; infinite without load. ISO 281:2007, 5.3.
 double BasicRatingLife(double rating, double load, BearingKind kind);
 /// The same with its derivatives.
-Dual BasicRatingLife(double rating, const Dual& load, BearingKind kind);
+Taped BasicRatingLife(double rating, const Taped& load, BearingKind kind);
 
 /// C = P L^(1/p): the rating that gives the load P the life L [10^6 revolutions].
 double RequiredDynamicRating(double load, double life, BearingKind kind);
@@ -54,17 +54,19 @@ double RequiredDynamicRating(double load, double life, BearingKind kind);
 /// Hours of a life in 10^6 revolutions at `speed` [rad/s]; infinite at rest.
 double HoursOf(double life, double speed);
 /// The same with its derivatives.
-Dual HoursOf(const Dual& life, const Dual& speed);
+Taped HoursOf(const Taped& life, const Taped& speed);
 
 /// a1 for a reliability of 90 .. 99.95 %, ISO 281:2007, table 12. Linear between the rows, which is
 /// safe because a1 falls ever faster (up to the rounding of the table).
 /// @throws std::invalid_argument outside the range.
 double ReliabilityFactor(double reliability);
+/// The same with its derivatives.
+Taped ReliabilityFactor(const Taped& reliability);
 
 /// L = (sum L_i^-e)^(-1/e): the life of several bearings that must all survive, at the reliability
 /// at which the L_i are given; e is the Weibull slope.
 double SystemLife(std::span<const double> lives, double weibull_slope);
 /// The same with its derivatives.
-Dual SystemLife(std::span<const Dual> lives, double weibull_slope);
+Taped SystemLife(std::span<const Taped> lives, double weibull_slope);
 
 }  // namespace vmech

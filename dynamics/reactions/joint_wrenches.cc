@@ -3,6 +3,7 @@
 #include "vmech/base/dual.h"
 #include "vmech/base/lanes4.h"
 #include "vmech/base/screw_algebra.h"
+#include "vmech/base/tape/taped4.h"
 #include "vmech/kinematics/loops/loops.h"
 
 namespace vmech {
@@ -70,7 +71,7 @@ void ApplyMultipliers(const KinematicTree& tree, const T* mu, TreeWorkspace<T>* 
                                     std::vector<JointState<T>>*) noexcept;
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
-VMECH_INSTANTIATE(Dual4)
+VMECH_INSTANTIATE(Taped4)
 VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)

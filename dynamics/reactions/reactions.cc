@@ -5,6 +5,7 @@
 #include "vmech/base/dual.h"
 #include "vmech/base/lanes4.h"
 #include "vmech/base/screw_algebra.h"
+#include "vmech/base/tape/taped4.h"
 #include "vmech/kinematics/loops/loops.h"
 #include "vmech/mechanisms/freedoms.h"
 
@@ -184,7 +185,7 @@ void ReactionSolver<T>::Solve(const std::vector<JointState<T>>& joints, const T*
 
 template class ReactionSolver<double>;
 template class ReactionSolver<Dual>;
-template class ReactionSolver<Dual4>;
+template class ReactionSolver<Taped4>;
 template class ReactionSolver<Lanes4>;
 
 }  // namespace vmech

@@ -3,6 +3,7 @@
 #include "vmech/base/dual.h"
 #include "vmech/base/lanes4.h"
 #include "vmech/base/screw_algebra.h"
+#include "vmech/base/tape/taped4.h"
 
 namespace vmech {
 namespace {
@@ -227,7 +228,7 @@ VectorXd BiasForces(const KinematicTree& tree, const VectorXd& q, const VectorXd
                            TreeWorkspace<T>*, T*) noexcept;
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
-VMECH_INSTANTIATE(Dual4)
+VMECH_INSTANTIATE(Taped4)
 VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)

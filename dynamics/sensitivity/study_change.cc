@@ -2,53 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <stdexcept>
 #include <type_traits>
 
+#include "vmech/dynamics/sensitivity/study_numbers.h"
+
 namespace vmech {
 namespace {
-
-template <typename T, typename Visit>
-void VisitVector(Vector3<T>& v, const Visit& visit) {
-  for (T& number : v) visit(number);
-}
-
-/// Calls visit(number) for every number of a design, in an order of its own.
-template <typename T, typename Visit>
-void VisitDesign(Design<T>* design, const Visit& visit) {
-  VisitVector(design->gravity_W, visit);
-  for (typename Design<T>::LinkNumbers& link : design->links) {
-    visit(link.mass);
-    VisitVector(link.p_LoLcm, visit);
-    for (T& number : link.I_Lcm.reshaped()) visit(number);
-    for (Pose<T>& X : link.X_LA) {
-      for (T& number : X.R.reshaped()) visit(number);
-      VisitVector(X.p, visit);
-    }
-  }
-  for (typename Design<T>::JointNumbers& joint : design->joints) {
-    visit(joint.pitch);
-    for (PassiveOf<T>& p : joint.passive) {
-      for (T* number : {&p.stiffness, &p.rest, &p.viscous, &p.coulomb}) visit(*number);
-    }
-    LoadFrictionOf<T>& f = joint.load_friction;
-    for (T* number : {&f.coefficient, &f.radius, &f.thrust_radius, &f.length, &f.width}) {
-      visit(*number);
-    }
-  }
-}
-
-template <typename T, typename Visit>
-void VisitTable(LoadTableOf<T>* table, const Visit& visit) {
-  VisitVector(table->p_L, visit);
-  visit(table->period);
-  for (T& at : table->at) visit(at);
-  for (Wrench<T>& W : table->wrenches) {
-    VisitVector(W.force, visit);
-    VisitVector(W.moment, visit);
-  }
-}
 
 template <typename Visit>
 void VisitSamples(std::vector<MotionSample>* samples, const Visit& visit) {
@@ -77,11 +40,13 @@ std::vector<double> StiffnessesOf(const LoadStudy& study) {
 /// Every number of a study that its loads depend on, in the order in which Spread gives slopes.
 std::vector<double> NumbersOfStudy(LoadStudy study) {
   std::vector<double> numbers;
+  numbers.reserve((3 * study.drives.size() + 1) * study.times.size() + 1000);
   const auto collect = [&](const double& number) { numbers.push_back(number); };
   Design<double> design = DesignOf(study.mechanism);
   VisitDesign(&design, collect);
   for (Grasp& grasp : study.mechanism.grasps) VisitVector(grasp.X_LG.p, collect);
-  for (ExternalLoad& load : study.external) VisitTable<double>(&load, collect);
+  for (ExternalLoad& load : study.external)
+    VisitTable(static_cast<LoadTableOf<double>*>(&load), collect);
   std::vector<MotionSample> samples = SamplesOf(study);
   VisitSamples(&samples, collect);
   for (double time : study.times) collect(time);
@@ -106,13 +71,14 @@ void Spread(const std::vector<double>& slopes, StudyChange* change) {
   give(change->cycle);
 }
 
-/// The slopes at 0 of numbers at -2, -1, 1 and 2 steps.
-std::vector<double> FivePointSlopes(const std::array<std::vector<double>, 4>& at, double step) {
-  std::vector<double> slopes(at[0].size());
-  for (size_t i = 0; i < slopes.size(); ++i) {
-    slopes[i] = (8 * (at[2][i] - at[1][i]) - (at[3][i] - at[0][i])) / (12 * step);
+/// Leaves no slopes of times and drives that are all zero.
+void LeaveOutZeros(PrescribedSlopes* slopes) {
+  bool zero = true;
+  VisitSamples(&slopes->drives, [&](double slope) { zero = zero && slope == 0; });
+  if (zero) slopes->drives.clear();
+  if (std::all_of(slopes->times.begin(), slopes->times.end(), [](double t) { return t == 0; })) {
+    slopes->times.clear();
   }
-  return slopes;
 }
 
 LoadTableOf<Dual> WithoutSlopes(const ExternalLoad& load) {
@@ -152,14 +118,36 @@ size_t CountNumbers(StudyChange* change) {
 
 }  // namespace
 
+std::vector<double> FivePointSlopes(const std::array<std::vector<double>, 5>& at, double step) {
+  constexpr double kSmooth = 1e-3;  // of the change: far above the fourth derivatives of formulas
+  constexpr double kRounding = 1e-13;  // of numbers of order 1
+  std::vector<double> slopes(at[0].size());
+  for (size_t i = 0; i < slopes.size(); ++i) {
+    const double here = at[2][i];
+    double range = 0;
+    for (const std::vector<double>& numbers : at) {
+      range = std::max(range, std::abs(numbers[i] - here));
+    }
+    const double fourth = at[0][i] - 4 * at[1][i] + 6 * here - 4 * at[3][i] + at[4][i];
+    if (std::abs(fourth) > kSmooth * range + kRounding * std::max(1.0, std::abs(here))) {
+      throw std::invalid_argument(
+          fmt::format("a number that it changes, {:.6g} here, has a corner within {:.3g} of this "
+                      "value, as min, max and abs have: there is no derivative",
+                      here, 2 * step));
+    }
+    slopes[i] = (8 * (at[3][i] - at[1][i]) - (at[4][i] - at[0][i])) / (12 * step);
+  }
+  return slopes;
+}
+
 StudyChange ChangeOfStudy(const PreparedStudy& prepared, const Motion& motion, const StudyAt& at,
                           double value, double step) {
   StudyChange change = WithoutSlopes(prepared, motion);
   const size_t count = CountNumbers(&change);
-  std::array<std::vector<double>, 4> numbers, stiffnesses;
-  constexpr std::array kSteps{-2, -1, 1, 2};
-  for (size_t k = 0; k < kSteps.size(); ++k) {
-    const LoadStudy study = at(value + kSteps[k] * step);
+  std::array<std::vector<double>, 5> numbers, stiffnesses;
+  for (size_t k = 0; k < numbers.size(); ++k) {
+    const double there = value + (static_cast<double>(k) - 2) * step;
+    const LoadStudy study = at(there);
     numbers[k] = NumbersOfStudy(study);
     stiffnesses[k] = StiffnessesOf(study);
     if (numbers[k].size() == count && stiffnesses[k].size() == stiffnesses[0].size()) continue;
@@ -167,14 +155,13 @@ StudyChange ChangeOfStudy(const PreparedStudy& prepared, const Motion& motion, c
         fmt::format("at {:.6g} the study has another form than at {:.6g} ({} numbers, not {}): a "
                     "parameter that "
                     "changes how many poses, rows or parts there are has no derivative",
-                    value + kSteps[k] * step, value, numbers[k].size(), count));
+                    there, value, numbers[k].size(), count));
   }
   Spread(FivePointSlopes(numbers, step), &change);
+  LeaveOutZeros(&change.prescribed);
   constexpr double kRounding = 1e-13;  // of numbers of order 1, and of coordinates some turns away
   change.rounding = kRounding / step;
-  for (size_t k = 1; k < kSteps.size(); ++k) {
-    change.shares = change.shares || stiffnesses[k] != stiffnesses[0];
-  }
+  change.shares = stiffnesses[0] != stiffnesses[4];
   return change;
 }
 

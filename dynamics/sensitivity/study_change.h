@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <vector>
 
@@ -26,12 +27,20 @@ struct StudyChange {
   double rounding = 0;  ///< of the slope of a number of order 1, such as an angle
   /// Stiffnesses of joints change, by which the rule `stiffness` shares what statics leaves open.
   bool shares = false;
+
+  /// Of a pose of the motion in the whole one.
+  size_t pose_number(size_t pose) const { return pose_numbers.empty() ? pose : pose_numbers[pose]; }
 };
 
+/// The slopes at 0 of numbers that are given at -2, -1, 0, 1 and 2 steps. All of one length.
+/// @throws std::invalid_argument where one has a corner there.
+std::vector<double> FivePointSlopes(const std::array<std::vector<double>, 5>& at, double step);
+
 /// By differences of the study's numbers at `value` +- `step` and +- 2 `step`, which are closed
-/// forms of the parameter: with a step of a thousandth nothing but rounding is left, 1e-12.
+/// forms of the parameter: with a step of a thousandth nothing but rounding is left, 1e-12. Calls
+/// `at` five times, in the order of FivePointSlopes.
 /// @throws std::invalid_argument if the parameter changes the form of the study (how many poses,
-///         links, rows of a table); what `at` throws.
+///         links, rows of a table), or has a corner near `value`; what `at` throws.
 StudyChange ChangeOfStudy(const PreparedStudy& prepared, const Motion& motion, const StudyAt& at,
                           double value, double step);
 

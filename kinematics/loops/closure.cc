@@ -5,6 +5,7 @@
 
 #include "vmech/base/dual.h"
 #include "vmech/base/lanes4.h"
+#include "vmech/base/tape/taped4.h"
 #include "vmech/kinematics/loops/loops.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
 
@@ -212,7 +213,7 @@ T CloseByNewton(const KinematicTree& tree, double tolerance, int max_steps,
                               TreeWorkspace<T>*, T*);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
-VMECH_INSTANTIATE(Dual4)
+VMECH_INSTANTIATE(Taped4)
 VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)

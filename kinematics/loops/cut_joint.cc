@@ -5,13 +5,14 @@
 #include "vmech/base/dual.h"
 #include "vmech/base/lanes4.h"
 #include "vmech/base/screw_algebra.h"
+#include "vmech/base/tape/taped4.h"
 
 namespace vmech {
 namespace {
 
-template <typename N>
-Vector3<DualOf<N>> RotationVector(const Matrix3<DualOf<N>>& R) {
-  using T = DualOf<N>;
+/// Of numbers with slopes.
+template <typename T>
+requires(kIsDual<T> || kIsTaped<T>) Vector3<T> RotationVector(const Matrix3<T>& R) {
   const Vector3<T> sine = 0.5 * Vector3<T>(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));
   const T cosine = 0.5 * (R.trace() - 1.0), square = sine.squaredNorm(), zero(0);
   const T size = sqrt(square);
@@ -136,7 +137,7 @@ Vector3<T> CutJointAccelerations(const KinematicTree& tree, const TreeWorkspace<
   template Vector3<T> CutJointAccelerations<T>(const KinematicTree&, const TreeWorkspace<T>&, int);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
-VMECH_INSTANTIATE(Dual4)
+VMECH_INSTANTIATE(Taped4)
 VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)

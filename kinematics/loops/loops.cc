@@ -5,6 +5,7 @@
 #include "vmech/base/dual.h"
 #include "vmech/base/lanes4.h"
 #include "vmech/base/screw_algebra.h"
+#include "vmech/base/tape/taped4.h"
 #include "vmech/kinematics/loops/cut_joint.h"
 
 namespace vmech {
@@ -291,11 +292,10 @@ LoopOpening LargestOpening(const KinematicTree& tree, const TreeWorkspace<T>& ws
   template T LargestLoopError<T>(const KinematicTree&, const TreeWorkspace<T>&);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
-VMECH_INSTANTIATE(Dual4)
+VMECH_INSTANTIATE(Taped4)
 VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 template LoopOpening LargestOpening<Dual>(const KinematicTree&, const TreeWorkspace<Dual>&);
-template LoopOpening LargestOpening<Dual4>(const KinematicTree&, const TreeWorkspace<Dual4>&);
 // NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace vmech

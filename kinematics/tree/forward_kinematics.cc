@@ -9,6 +9,7 @@
 #include "vmech/base/lanes4.h"
 #include "vmech/base/poison.h"
 #include "vmech/base/screw_algebra.h"
+#include "vmech/base/tape/taped4.h"
 
 namespace vmech {
 namespace {
@@ -268,7 +269,7 @@ Vector6d GraspAcceleration(const TreeWorkspace<double>& ws, int node, const Pose
   template void MoveCoordinates<T>(const KinematicTree&, const T*, T*);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
-VMECH_INSTANTIATE(Dual4)
+VMECH_INSTANTIATE(Taped4)
 VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)

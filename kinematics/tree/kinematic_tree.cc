@@ -6,6 +6,7 @@
 
 #include "vmech/base/dual.h"
 #include "vmech/base/lanes4.h"
+#include "vmech/base/tape/taped4.h"
 #include "vmech/mechanisms/freedoms.h"
 #include "vmech/mechanisms/validity.h"
 
@@ -348,11 +349,10 @@ int CoordinateIndex(const KinematicTree& tree, int joint, int freedom) {
   template TreeDesign<T> DesignOfTree<T>(const KinematicTree&);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
-VMECH_INSTANTIATE(Dual4)
+VMECH_INSTANTIATE(Taped4)
 VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 template Design<Dual> Design<Dual>::cast<Dual>() const;
-template Design<Dual4> Design<Dual>::cast<Dual4>() const;
 // NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace vmech

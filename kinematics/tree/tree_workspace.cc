@@ -3,6 +3,7 @@
 #include "vmech/base/dual.h"
 #include "vmech/base/lanes4.h"
 #include "vmech/base/screw_algebra.h"
+#include "vmech/base/tape/taped4.h"
 
 namespace vmech {
 
@@ -46,7 +47,7 @@ void TreeWorkspace<T>::Take(const KinematicTree& tree, const TreeDesign<T>& desi
 
 template struct TreeWorkspace<double>;
 template struct TreeWorkspace<Dual>;
-template struct TreeWorkspace<Dual4>;
+template struct TreeWorkspace<Taped4>;
 template struct TreeWorkspace<Lanes4>;
 
 }  // namespace vmech

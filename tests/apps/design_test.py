@@ -137,6 +137,52 @@ class Sensitivities(unittest.TestCase):
             self.assertAlmostEqual(float(by_parameter["elasticity"]),
                                    float(by_number["elasticity"]), delta=1e-9)
 
+    def test_know_what_figures_owe_to_the_study_alone(self):
+        # Loads do not depend on where bearings are and how sure they must be; their lives do.
+        folder = Folder("bearing-places")
+        text = (folder.path / STUDY).read_text(encoding="utf-8")
+        text = text.replace("[-15, 15]", "[-15, place]", 1).replace("reliability: 90",
+                                                                     "reliability: sure", 1)
+        text = text.replace("steps: 720", "steps: 36")
+        (folder.path / STUDY).write_text(
+            text.replace("motion:", "parameters: {place: 20, sure: 92}\nmotion:", 1),
+            encoding="utf-8")
+
+        def life(name, value):
+            done = run("loads", folder.path / STUDY, "--set", f"{name}={value!r}", "--out",
+                       folder.path / "out", "-q")
+            assert done.returncode in (0, 4), done.stderr
+            summary = json.loads((folder.path / "out" / "summary.json").read_text("utf-8"))
+            return {b["joint"]: b for b in summary["bearings"]}["main"]["system_life_hours"]
+
+        done = run("sensitivities", folder.path / STUDY, "--undetermined", "--of", "main.life",
+                   "--out", folder.path / "slopes")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for row in rows(folder.path / "slopes" / "sensitivities.csv"):
+            name, value = row["parameter"], float(row["parameter_value"])
+            step = 1e-3 * value
+            at = {k: life(name, value + k * step) for k in (-2, -1, 1, 2)}
+            difference = (8 * (at[1] - at[-1]) - (at[2] - at[-2])) / (12 * step)
+            self.assertNotEqual(difference, 0)
+            self.assertAlmostEqual(float(row["slope"]) / difference, 1, delta=1e-7)
+
+    def test_refuses_corners_and_stiffnesses_that_decide(self):
+        folder = self.with_parameters("corners")
+        text = (folder.path / MECHANISM).read_text(encoding="utf-8")
+        text = text.replace("radius: 50 mm", "radius: 50 mm, stiff: 1e8")
+        text = text.replace("mass: 0.35", 'mass: "max(0.35, 0.35 * radius/50 mm)"')
+        text = text.replace("start: -52.372265552638154}",
+                            "start: -52.372265552638154, "
+                            "stiffness: [stiff, stiff, stiff, 100, 100, 0]}")
+        (folder.path / MECHANISM).write_text(text, encoding="utf-8")
+        done = run("sensitivities", folder.path / STUDY, "--undetermined", "--of",
+                   "pin.force,pin.life")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, "radius: a number .* has a corner")
+        self.assertRegex(done.stdout, "stiff: it changes stiffnesses")
+        determined = run("sensitivities", folder.path / STUDY, "--of", "pin.force")
+        self.assertNotIn("stiff: it changes", determined.stdout)
+
     def test_designs_by_parameters_of_the_file(self):
         folder = self.with_parameters("parameters-design")
         done = run("optimise", folder.path / STUDY, "--minimise", "main.drive", "--vary",

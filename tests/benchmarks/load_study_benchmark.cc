@@ -34,7 +34,8 @@ void SliderCrankPoses(benchmark::State& state) {
 }
 BENCHMARK(SliderCrankPoses)->RangeMultiplier(4)->Range(720, 720 * 64)->Complexity();
 
-/// The derivatives of all loads of the slider-crank, 720 poses, by 20 masses and places.
+/// The derivatives of all loads of the slider-crank, 720 poses, by 20 masses and places, one by
+/// one.
 void SliderCrankGradient(benchmark::State& state) {
   const LoadStudy study = SliderCrankStudy(720);
   const PreparedStudy prepared = PrepareStudy(study);
@@ -88,6 +89,7 @@ BENCHMARK_CAPTURE(SliderCrankFigures, Peak, {"pin.force"})->Unit(benchmark::kMil
 BENCHMARK_CAPTURE(SliderCrankFigures, Peaks, {"pin.force", "wrist.force", "main.drive"})
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(SliderCrankFigures, Rms, {"pin.force.rms"})->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(SliderCrankFigures, Life, {"pin.life"})->Unit(benchmark::kMillisecond);
 
 void WindowFourBarPoses(benchmark::State& state) {
   const LoadStudy study = WindowStudy(static_cast<int>(state.range(0)), 720);

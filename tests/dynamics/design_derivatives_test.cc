@@ -4,14 +4,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "dynamics/driven_examples.h"
 #include "vmech/dynamics/loads/prepare_study.h"
 #include "vmech/dynamics/loads/run_load_study.h"
 #include "vmech/dynamics/loads/track_motion.h"
 #include "vmech/dynamics/sensitivity/load_derivatives.h"
+#include "vmech/dynamics/sensitivity/load_gradient.h"
 #include "vmech/dynamics/sensitivity/study_change.h"
 
 namespace vmech {
@@ -99,12 +102,54 @@ VectorXd Slopes(const LoadStudy& study, const StudyAt& at) {
   const PreparedStudy prepared = PrepareStudy(study);
   const Motion motion = TrackMotion(study, prepared, kClosed);
   const StudyChange change = ChangeOfStudy(prepared, motion, at, 0, 1e-3);
-  const LoadDerivatives loads = DifferentiateLoads(prepared, motion, change);
-  VectorXd all(loads.wrenches.size() + loads.drive_forces.size());
-  double* next = all.data();
-  for (const Dual& component : loads.wrenches) *next++ = component.slope;
-  for (const Dual& force : loads.drive_forces) *next++ = force.slope;
-  return all;
+  const LoadRows<Dual> loads = DifferentiateLoads(prepared, motion, change);
+  const LoadLayout& layout = loads.layout;
+  std::vector<double> wrenches, drive_forces;
+  for (size_t i = 0; i < motion.size(); ++i) {
+    const auto slope = [&](size_t k) { return loads.row(i)[k].slope; };
+    for (size_t k = 0; k < 6 * layout.joints; ++k) wrenches.push_back(slope(layout.wrench(0) + k));
+    for (size_t k = 0; k < layout.drives; ++k) drive_forces.push_back(slope(layout.drive_force(k)));
+  }
+  wrenches.insert(wrenches.end(), drive_forces.begin(), drive_forces.end());
+  return Eigen::Map<const VectorXd>(wrenches.data(), static_cast<Eigen::Index>(wrenches.size()));
+}
+
+/// A sum over some of the poses of everything that comes of a study, each with a weight of its own.
+LoadRows<double> SomeSum(const LoadModel& model, const Motion& motion) {
+  LoadRows<double> weights{LoadLayout(model), {}, {}};
+  for (size_t i = 0; i < motion.size(); ++i) {
+    if (i % 7 == 3) continue;
+    weights.poses.push_back(i);
+    for (size_t k = 0; k < weights.layout.width(); ++k) {
+      weights.numbers.push_back(std::sin(1.0 + 2.3 * static_cast<double>(i + 5 * k)));
+    }
+  }
+  return weights;
+}
+
+/// The slope of the sum by what one pass backwards through the poses has, and by what duals have.
+void ExpectSameGradient(const LoadStudy& study, const Change& change) {
+  constexpr double kRounding = 1e-11;  // of the terms, of which there are thousands
+  const PreparedStudy prepared = PrepareStudy(study);
+  const Motion motion = TrackMotion(study, prepared, kClosed);
+  if (!LoadGradients::Exist(prepared.model, motion)) return;
+  const std::vector<StudyChange> changes{
+      ChangeOfStudy(prepared, motion, Changed(study, change), 0, 1e-3)};
+  const LoadRows<double> weights = SomeSum(prepared.model, motion);
+  const LoadRows<Dual> loads = DifferentiateLoads(prepared, motion, changes[0]);
+  double slope = 0, size = 0;
+  for (size_t i = 0; i < weights.poses.size(); ++i) {
+    for (size_t k = 0; k < weights.layout.width(); ++k) {
+      const double term = weights.row(i)[k] * loads.row(weights.poses[i])[k].slope;
+      slope += term;
+      size += std::abs(term);
+    }
+  }
+  LoadGradients gradients(prepared, motion, changes);
+  for (int again = 0; again < 2; ++again) {
+    const double swept = SlopeAlong(changes[0], gradients.Of(weights), prepared.model, motion);
+    EXPECT_LE(std::abs(swept - slope), kRounding * size);
+  }
 }
 
 /// Zero where statics does not determine a component: the rule that settles it goes by the size of
@@ -149,6 +194,12 @@ TEST_P(EveryDesign, HasTheDerivativeBySpeedThatDifferencesHave) {
   ExpectSameDerivative(study_, ChangeSpeed);
 }
 
+TEST_P(EveryDesign, HasTheGradientForwardsAndBackwards) {
+  ExpectSameGradient(study_, ChangeSize);
+  ExpectSameGradient(study_, ChangeForces);
+  ExpectSameGradient(study_, ChangeSpeed);
+}
+
 INSTANTIATE_TEST_SUITE_P(Examples, EveryDesign, testing::ValuesIn(DrivenExamples()),
                          [](const auto& info) { return TestName(info.param.name); });
 
@@ -173,10 +224,23 @@ TEST(DesignDerivatives, OfALoadThatGoesByTheDrivesCoordinate) {
                    {{30, -20, 0}, {0, 0, 1}},
                    {{-70, 15, 0}, {0, 0, 2}},
                    {{5, 80, 0}, {0, 0, 0}}};
-  ExpectSameDerivative(study, ChangeForces);
-  ExpectSameDerivative(study, [](double by, LoadStudy* changed) {
+  const auto shift = [](double by, LoadStudy* changed) {
     for (double& at : changed->external[0].at) at += by;
-  });
+  };
+  for (const Change& change : {Change(ChangeForces), Change(shift), Change(ChangeSpeed)}) {
+    ExpectSameDerivative(study, change);
+    ExpectSameGradient(study, change);
+  }
+}
+
+TEST(DesignDerivatives, AreSweptBackThroughMostExamples) {
+  size_t swept = 0;
+  for (const DrivenExample& example : DrivenExamples()) {
+    const LoadStudy study = StudyOf(example.name);
+    const PreparedStudy prepared = PrepareStudy(study);
+    swept += LoadGradients::Exist(prepared.model, TrackMotion(study, prepared, kClosed)) ? 1 : 0;
+  }
+  EXPECT_GE(2 * swept, DrivenExamples().size());
 }
 
 TEST(DesignDerivatives, OfFrictionThatGoesByTheLoadsOfItsJoints) {

@@ -5,6 +5,7 @@
 
 #include "vmech/base/dual.h"
 #include "vmech/base/lanes4.h"
+#include "vmech/base/tape/taped4.h"
 
 namespace vmech {
 namespace {
@@ -229,7 +230,7 @@ std::array<UnaccountedLoad, 2> UnaccountedLoads(const Joint& joint, const Wrench
   template Vector3<T> SlidingFriction<T>(JointType, const Vector3<T>&, const Vector3<T>&);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
-VMECH_INSTANTIATE(Dual4)
+VMECH_INSTANTIATE(Taped4)
 VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)

@@ -6,6 +6,7 @@
 #include "vmech/base/dual.h"
 #include "vmech/base/lanes4.h"
 #include "vmech/base/screw_algebra.h"
+#include "vmech/base/tape/taped4.h"
 
 namespace vmech {
 
@@ -57,70 +58,71 @@ double ArgumentSlope(const LoadModel& model, const ExternalLoad& load,
                      const PrescribedSlopes& slopes, size_t pose) {
   switch (load.over) {
     case ExternalLoad::Over::kTime:
-      return slopes.times[pose];
+      return slopes.times.empty() ? 0 : slopes.times[pose];
     case ExternalLoad::Over::kDriveCoordinate:
-      return slopes.drives[pose * model.drives.size()].position;
+      return slopes.drives.empty() ? 0 : slopes.drives[pose * model.drives.size()].position;
     case ExternalLoad::Over::kConstant:
       break;
   }
   return 0;
 }
 
-/// The wrench of a load at one pose, in its own axes; of duals with its slope.
 template <typename T>
-auto WrenchAtPose(const LoadModel& model, const Motion& motion, size_t pose, size_t i,
-                  const PrescribedSlopes* slopes) {
-  const ExternalLoad& load = model.external[i];
-  const double at = TableArgument(model, load, motion, pose);
-  if constexpr (kIsDual<T>) {
-    if (slopes == nullptr) {
-      const Wrenchd W = WrenchAt(load, at);
-      return Wrench<Dual>{W.force.cast<Dual>(), W.moment.cast<Dual>()};
-    }
-    const Dual argument(at, ArgumentSlope(model, load, *slopes, pose));
-    return WrenchAt<Dual>(load.over, slopes->external[i], argument);
-  } else {
-    return WrenchAt(load, at);
-  }
-}
-
-template <typename T>
-Vector3<T> PointOfApplication(const ExternalLoad& load, size_t i, const PrescribedSlopes* slopes) {
-  if constexpr (kIsDual<T>) {
-    if (slopes != nullptr) {
-      const Vector3<Dual>& p = slopes->external[i].p_L;
-      Vector3<T> point;
-      for (int k = 0; k < 3; ++k) point[k] = FromLanes<T>([&](int) { return p[k]; });
-      return point;
-    }
+Vector3<T> PointOfApplication(const ExternalLoad& load, size_t i, const LoadWorkspace<T>& ws) {
+  if constexpr (kIsTaped<T>) {
+    return ws.on_tape->points[i];
+  } else if constexpr (kIsDual<T>) {
+    if (ws.slopes != nullptr) return ws.slopes->external[i].p_L;
   }
   return load.p_L.cast<T>();
 }
 
-}  // namespace
-
+/// At the poses `pose`, ..., in the load's own axes.
 template <typename T>
-void EvaluateExternalLoads(const LoadModel& model, const Motion& motion, size_t pose,
-                           LoadWorkspace<T>* ws) {
-  for (size_t i = 0; i < model.external.size(); ++i) {
-    const ExternalLoad& load = model.external[i];
-    using OneWrench = decltype(WrenchAtPose<T>(model, motion, pose, i, ws->slopes));
-    OneWrench lanes[kLanesOf<T>];
+Wrench<T> WrenchAtPoses(const LoadModel& model, const Motion& motion, size_t pose, size_t i,
+                        const LoadWorkspace<T>& ws) {
+  const ExternalLoad& load = model.external[i];
+  if constexpr (kIsTaped<T>) {
+    return ws.on_tape->external[i];
+  } else {
+    if constexpr (kIsDual<T>) {
+      if (ws.slopes != nullptr) return WrenchWithSlope(model, motion, pose, i, *ws.slopes);
+    }
+    Wrenchd lanes[kLanesOf<T>];
     for (int lane = 0; lane < kLanesOf<T>; ++lane) {
-      lanes[lane] = WrenchAtPose<T>(model, motion, pose + lane, i, ws->slopes);
+      lanes[lane] = WrenchAt(load, TableArgument(model, load, motion, pose + lane));
     }
     Wrench<T> W;
     for (int k = 0; k < 3; ++k) {
       W.force[k] = FromLanes<T>([&](int lane) { return lanes[lane].force[k]; });
       W.moment[k] = FromLanes<T>([&](int lane) { return lanes[lane].moment[k]; });
     }
+    return W;
+  }
+}
+
+}  // namespace
+
+Wrench<Dual> WrenchWithSlope(const LoadModel& model, const Motion& motion, size_t pose, size_t load,
+                             const PrescribedSlopes& slopes) {
+  const ExternalLoad& external = model.external[load];
+  const Dual argument(TableArgument(model, external, motion, pose),
+                      ArgumentSlope(model, external, slopes, pose));
+  return WrenchAt<Dual>(external.over, slopes.external[load], argument);
+}
+
+template <typename T>
+void EvaluateExternalLoads(const LoadModel& model, const Motion& motion, size_t pose,
+                           LoadWorkspace<T>* ws) {
+  for (size_t i = 0; i < model.external.size(); ++i) {
+    const ExternalLoad& load = model.external[i];
     const int node = model.tree.NodeOfLink(load.link);
     if (node < 0) continue;
     const FrameT<T> L = ws->tree.at(node).X * ws->tree.at(node).X_BL;
     FrameT<T> at;
     if (load.axes == ExternalLoad::Axes::kLink) at = L;
-    at.p = PointInWorld(L, TripleOf<T>(PointOfApplication<T>(load, i, ws->slopes)));
-    ws->external[i] = WrenchFrom(at, W);
+    at.p = PointInWorld(L, TripleOf<T>(PointOfApplication(load, i, *ws)));
+    ws->external[i] = WrenchFrom(at, WrenchAtPoses(model, motion, pose, i, *ws));
   }
 }
 
@@ -130,7 +132,7 @@ void EvaluateExternalLoads(const LoadModel& model, const Motion& motion, size_t 
                                          LoadWorkspace<T>*);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
-VMECH_INSTANTIATE(Dual4)
+VMECH_INSTANTIATE(Taped4)
 VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)

@@ -21,6 +21,10 @@ bool OutsideTable(const ExternalLoad& load, double at);
 double TableArgument(const LoadModel& model, const ExternalLoad& load, const Motion& motion,
                      size_t pose);
 
+/// The wrench of a load at a pose, in its own axes, with its slope.
+Wrench<Dual> WrenchWithSlope(const LoadModel& model, const Motion& motion, size_t pose, size_t load,
+                             const PrescribedSlopes& slopes);
+
 /// All external wrenches at the poses `pose`, ... about their points of application, world axes.
 /// Needs X; writes ws->external.
 template <typename T>

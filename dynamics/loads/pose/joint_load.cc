@@ -4,6 +4,7 @@
 
 #include "vmech/base/dual.h"
 #include "vmech/base/lanes4.h"
+#include "vmech/base/tape/taped4.h"
 #include "vmech/kinematics/loops/cut_joint.h"
 
 namespace vmech {
@@ -74,7 +75,7 @@ void JointAccelerations(const KinematicTree& tree, const TreeWorkspace<T>& ws, c
                                       std::vector<JointLoad<T>>*);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
-VMECH_INSTANTIATE(Dual4)
+VMECH_INSTANTIATE(Taped4)
 VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)

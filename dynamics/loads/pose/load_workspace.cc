@@ -2,6 +2,7 @@
 
 #include "vmech/base/dual.h"
 #include "vmech/base/lanes4.h"
+#include "vmech/base/tape/taped4.h"
 
 namespace vmech {
 
@@ -47,7 +48,7 @@ LoadWorkspace<T>::LoadWorkspace(const LoadModel& model, const Design<T>& design,
 
 template struct LoadWorkspace<double>;
 template struct LoadWorkspace<Dual>;
-template struct LoadWorkspace<Dual4>;
+template struct LoadWorkspace<Taped4>;
 template struct LoadWorkspace<Lanes4>;
 
 }  // namespace vmech

@@ -20,7 +20,7 @@ struct RestingContact {
 };
 
 /// Memory for one thread, for one model that must outlive it. T is double for one pose at a time,
-/// Lanes4 for four in a row, or Dual and Dual4 for these and their derivatives.
+/// Lanes4 for four in a row, or Dual and Taped4 for these and their derivatives.
 template <typename T>
 struct LoadWorkspace {
   explicit LoadWorkspace(const LoadModel& model);  ///< sizes everything
@@ -32,6 +32,8 @@ struct LoadWorkspace {
   Vector3<T> gravity_W;                                   ///< [m/s^2]
   /// Of duals: how what the study prescribes goes with the parameter; null if it does not.
   const PrescribedSlopes* slopes = nullptr;
+  /// Of numbers on a tape, which need it: what the study prescribes at the poses at hand.
+  const PrescribedOnTape<T>* on_tape = nullptr;
   TreeWorkspace<T> tree;               ///< pose and Jacobians of links
   DependentSolver<T> dependents;       ///< velocities that follow from others
   ReactionSolver<T> reactions;         ///< what joints transmit

@@ -2,6 +2,7 @@
 
 #include "vmech/base/dual.h"
 #include "vmech/base/lanes4.h"
+#include "vmech/base/tape/taped4.h"
 #include "vmech/dynamics/loads/pose/contact_friction.h"
 #include "vmech/dynamics/rigid_body/passive.h"
 #include "vmech/kinematics/loops/cut_joint.h"
@@ -71,7 +72,7 @@ int LockingJoint(const LoadModel& model, const LoadWorkspace<double>& ws, bool s
   template void SpreadPassive<T>(const LoadModel&, LoadWorkspace<T>*);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
-VMECH_INSTANTIATE(Dual4)
+VMECH_INSTANTIATE(Taped4)
 VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)

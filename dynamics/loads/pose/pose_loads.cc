@@ -6,6 +6,7 @@
 #include "vmech/base/dual.h"
 #include "vmech/base/lanes4.h"
 #include "vmech/base/screw_algebra.h"
+#include "vmech/base/tape/taped4.h"
 #include "vmech/dynamics/loads/pose/external_loads.h"
 #include "vmech/dynamics/loads/pose/hand_wrench.h"
 #include "vmech/dynamics/loads/pose/idle_freedoms.h"
@@ -25,20 +26,40 @@ template <typename T>
 constexpr bool kIsPlain = std::is_same_v<T, double>;  // one pose, without slopes
 template <typename T>
 constexpr bool kIsOnePose = kLanesOf<T> == 1;
-
-/// A part of what drive k prescribes at the poses `pose`, ...; of duals with its slope.
 template <typename T>
-T Prescribed(const LoadModel& model, const Motion& motion, size_t pose, size_t k,
-             double MotionSample::*part, const LoadWorkspace<T>& ws) {
-  return FromLanes<T>([&](int lane) {
-    const size_t at = (pose + lane) * model.drives.size() + k;
-    const double value = motion.drives[at].*part;
-    if constexpr (kIsDual<T>) {
-      return Dual(value, ws.slopes == nullptr ? 0.0 : ws.slopes->drives[at].*part);
-    } else {
-      return value;
-    }
-  });
+constexpr bool kHasSlopes = kIsDual<T> || kIsTaped<T>;
+
+/// With the slopes of `of`.
+template <typename N>
+DualOf<N> WithValue(const N& value, const DualOf<N>& of) {
+  return {value, of.slope};
+}
+template <typename N>
+TapedOf<N> WithValue(const N& value, const TapedOf<N>& of) {
+  return {value, of.tape, of.index};
+}
+
+/// Position, velocity or acceleration (0, 1, 2) that drive k prescribes at the poses `pose`, ...;
+/// with its slopes.
+template <typename T>
+T Prescribed(const LoadModel& model, const Motion& motion, size_t pose, size_t k, size_t part,
+             const LoadWorkspace<T>& ws) {
+  constexpr double MotionSample::*kParts[] = {&MotionSample::position, &MotionSample::velocity,
+                                              &MotionSample::acceleration};
+  if constexpr (kIsTaped<T>) {
+    return ws.on_tape->drives[k][part];
+  } else {
+    return FromLanes<T>([&](int lane) {
+      const size_t at = (pose + lane) * model.drives.size() + k;
+      const double value = motion.drives[at].*kParts[part];
+      if constexpr (kIsDual<T>) {
+        const bool slopes = ws.slopes != nullptr && !ws.slopes->drives.empty();
+        return Dual(value, slopes ? ws.slopes->drives[at].*kParts[part] : 0.0);
+      } else {
+        return value;
+      }
+    });
+  }
 }
 
 template <typename T>
@@ -47,24 +68,44 @@ void GatherCoordinates(const LoadModel& model, const Motion& motion, size_t pose
   for (Eigen::Index i = 0; i < ws->q.size(); ++i) {
     ws->q[i] = FromLanes<T>([&](int lane) { return motion.q(pose + lane)[i]; });
   }
-  if constexpr (kIsDual<T>) {
+  if constexpr (kHasSlopes<T>) {
     for (size_t k = 0; k < model.drives.size(); ++k) {
       const JointDrive& drive = model.drives[k];
-      ws->q[CoordinateIndex(model.tree, drive.joint, drive.freedom)].slope =
-          Prescribed(model, motion, pose, k, &MotionSample::position, *ws).slope;
+      T& q = ws->q[CoordinateIndex(model.tree, drive.joint, drive.freedom)];
+      q = WithValue(q.value, Prescribed(model, motion, pose, k, 0, *ws));
     }
   }
 }
 
+template <typename T>
+void FactorPose(const LoadModel& model, LoadWorkspace<T>* ws) {
+  EvaluatePose(model.tree, ws->q.data(), &ws->tree);
+  ws->dependents.Factor(ws->tree);
+}
+
 /// How the closed pose goes along with the numbers of the design: one step of Newton's, which at a
 /// closed pose moves slopes alone (implicit differentiation, C dq = e2).
-template <typename N>
-void CloseSlopes(const LoadModel& model, LoadWorkspace<DualOf<N>>* ws) {
-  ws->closing = LargestOpening(model.tree, ws->tree);
+template <typename T>
+void CloseSlopes(const LoadModel& model, LoadWorkspace<T>* ws) {
+  if constexpr (kIsDual<T>) ws->closing = LargestOpening(model.tree, ws->tree);
   ws->dependents.StepCoordinates(ws->tree, ws->q.data());
-  EvaluatePose(model.tree, ws->q.data(), &ws->tree);
-  ws->opening = LargestOpening(model.tree, ws->tree);
-  ws->dependents.Factor(ws->tree);
+  FactorPose(model, ws);
+  if constexpr (kIsDual<T>) ws->opening = LargestOpening(model.tree, ws->tree);
+}
+
+template <typename T>
+void ClosePose(const LoadModel& model, LoadWorkspace<T>* ws) {
+  if constexpr (kIsTaped<T>) {
+    // Slopes of C and its factors would be those of a step that is nothing.
+    EvaluatePose(model.tree, ws->q.data(), &ws->tree, false);
+    ws->on_tape->tape->Pause(true);
+    LoopJacobian(model.tree, &ws->tree);
+    ws->dependents.Factor(ws->tree);
+    ws->on_tape->tape->Pause(false);
+  } else {
+    FactorPose(model, ws);
+  }
+  if constexpr (kHasSlopes<T>) CloseSlopes(model, ws);
 }
 
 /// What the drives prescribe.
@@ -72,11 +113,8 @@ template <typename T>
 void GatherDrives(const LoadModel& model, const Motion& motion, size_t pose, LoadWorkspace<T>* ws) {
   const CoordinatePartition& partition = model.partition;
   for (size_t k = 0; k < model.drives.size(); ++k) {
-    const auto part = [&](double MotionSample::*of) {
-      return Prescribed(model, motion, pose, k, of, *ws);
-    };
-    ws->v[partition.driven[k]] = part(&MotionSample::velocity);
-    ws->vdot[partition.driven[k]] = part(&MotionSample::acceleration);
+    ws->v[partition.driven[k]] = Prescribed(model, motion, pose, k, 1, *ws);
+    ws->vdot[partition.driven[k]] = Prescribed(model, motion, pose, k, 2, *ws);
   }
 }
 
@@ -155,9 +193,11 @@ void PositionJoints(const LoadModel& model, const Motion& motion, size_t pose,
       joint.position[k] = FromLanes<T>(
           [&](int lane) { return motion.cut_positions[(pose + lane) * loops + l][k]; });
     }
-    if constexpr (kIsDual<T>) {
+    if constexpr (kHasSlopes<T>) {
       const Vector3<T> here = CutJointCoordinates(model.tree.loops[l], ws->tree.loops[l]);
-      for (int k = 0; k < 3; ++k) joint.position[k].slope = here[k].slope;
+      for (int k = 0; k < 3; ++k) {
+        joint.position[k] = WithValue(joint.position[k].value, here[k]);
+      }
     }
   }
 }
@@ -264,11 +304,9 @@ bool EvaluatePoseLoads(const LoadModel& model, const Motion& motion, size_t pose
     return false;
   }
   GatherCoordinates(model, motion, pose, ws);
-  EvaluatePose(model.tree, ws->q.data(), &ws->tree);
-  ws->dependents.Factor(ws->tree);
-  if constexpr (kIsDual<T>) CloseSlopes(model, ws);
+  ClosePose(model, ws);
   if (!AllLanes(ws->dependents.smallest_pivot() > T(0))) return false;
-  ws->closure = LargestLoopError(model.tree, ws->tree);
+  if constexpr (!kIsTaped<T>) ws->closure = LargestLoopError(model.tree, ws->tree);
   if constexpr (kIsOnePose<T>) {
     if (ws->motions.size() > 0) FindMotions(model, ws);
   }
@@ -287,9 +325,11 @@ bool EvaluatePoseLoads(const LoadModel& model, const Motion& motion, size_t pose
   JointFrames(model.tree, ws->tree, &ws->joints);
   ws->reactions.Factor(ws->tree, ws->joints);
   FindEquilibrium(model, ws);
-  JointAccelerations(model.tree, ws->tree, ws->vdot.data(), &ws->loads);
   DriveForces(model, ws);
-  EvaluatePower(model, ws);
+  if constexpr (!kIsTaped<T>) {
+    JointAccelerations(model.tree, ws->tree, ws->vdot.data(), &ws->loads);
+    EvaluatePower(model, ws);
+  }
   return true;
 }
 
@@ -300,7 +340,7 @@ bool EvaluatePoseLoads(const LoadModel& model, const Motion& motion, size_t pose
   template bool EvaluatePoseLoads<T>(const LoadModel&, const Motion&, size_t, LoadWorkspace<T>*);
 VMECH_INSTANTIATE(double)
 VMECH_INSTANTIATE(Dual)
-VMECH_INSTANTIATE(Dual4)
+VMECH_INSTANTIATE(Taped4)
 VMECH_INSTANTIATE(Lanes4)
 #undef VMECH_INSTANTIATE
 // NOLINTEND(bugprone-macro-parentheses)

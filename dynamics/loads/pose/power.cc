@@ -86,7 +86,6 @@ void EvaluatePower(const LoadModel& model, LoadWorkspace<T>* ws) {
 
 template void EvaluatePower<double>(const LoadModel&, LoadWorkspace<double>*);
 template void EvaluatePower<Dual>(const LoadModel&, LoadWorkspace<Dual>*);
-template void EvaluatePower<Dual4>(const LoadModel&, LoadWorkspace<Dual4>*);
 template void EvaluatePower<Lanes4>(const LoadModel&, LoadWorkspace<Lanes4>*);
 
 }  // namespace vmech

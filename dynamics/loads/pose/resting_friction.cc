@@ -6,6 +6,7 @@
 #include "vmech/base/dual.h"
 #include "vmech/base/lanes4.h"
 #include "vmech/base/linear_algebra/linear_algebra.h"
+#include "vmech/base/tape/taped4.h"
 #include "vmech/dynamics/loads/pose/contact_friction.h"
 #include "vmech/dynamics/rigid_body/passive.h"
 
@@ -171,7 +172,7 @@ void HoldByFriction(const LoadModel& model, LoadWorkspace<double>* ws) {
 
 template void FindContacts<double>(const LoadModel&, const Motion&, LoadWorkspace<double>*);
 template void FindContacts<Dual>(const LoadModel&, const Motion&, LoadWorkspace<Dual>*);
-template void FindContacts<Dual4>(const LoadModel&, const Motion&, LoadWorkspace<Dual4>*);
+template void FindContacts<Taped4>(const LoadModel&, const Motion&, LoadWorkspace<Taped4>*);
 template void FindContacts<Lanes4>(const LoadModel&, const Motion&, LoadWorkspace<Lanes4>*);
 
 }  // namespace vmech

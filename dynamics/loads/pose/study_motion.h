@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "vmech/base/dual.h"
+#include "vmech/base/tape/tape.h"
 #include "vmech/dynamics/loads/load_study.h"
 #include "vmech/kinematics/motion/motion_law.h"
 
@@ -30,9 +32,21 @@ struct Motion {
 /// How what a study prescribes goes with a parameter: the slopes of its motion, and its external
 /// loads with theirs.
 struct PrescribedSlopes {
-  std::vector<double> times;                ///< [poses]
-  std::vector<MotionSample> drives;         ///< [poses * drives]
+  std::vector<double> times;                ///< [poses]; empty where they are all zero
+  std::vector<MotionSample> drives;         ///< [poses * drives]; empty where they are all zero
   std::vector<LoadTableOf<Dual>> external;  ///< per load, as LoadStudy::external
+};
+
+/// What a study prescribes at the poses at hand, for kernels whose numbers T are on a tape.
+template <typename T>
+struct PrescribedOnTape;
+/// As variables of the tape.
+template <typename N>
+struct PrescribedOnTape<TapedOf<N>> {
+  TapeOf<N>* tape = nullptr;                      ///< must outlive it
+  std::vector<std::array<TapedOf<N>, 3>> drives;  ///< [drives] as MotionSample
+  std::vector<Vector3<TapedOf<N>>> points;        ///< per load: LoadTableOf::p_L
+  std::vector<Wrench<TapedOf<N>>> external;       ///< per load, in its own axes
 };
 
 }  // namespace vmech
