@@ -88,13 +88,13 @@ FigureValues::FigureValues(const StudyFile& file, const StudyOutcome& outcome,
 
 Taped FigureValues::Use(size_t number) {
   const Taped variable = Taped::Variable(numbers_[number], &tape_);
-  used_.emplace_back(variable.index, number);
+  used_.push_back({variable.index, false, number});
   return variable;
 }
 
 Taped FigureValues::UseLoad(size_t number) {
   const Taped variable = Taped::Variable(loads_.numbers[number], &tape_);
-  used_loads_.emplace_back(variable.index, number);
+  used_.push_back({variable.index, true, number});
   return variable;
 }
 
@@ -108,7 +108,6 @@ std::array<Taped, count> FigureValues::UseRow(size_t pose, size_t first) {
 FigureValue FigureValues::Of(const Figure& figure, bool with_derivatives) {
   tape_.Rewind(1);
   used_.clear();
-  used_loads_.clear();
   FigureValue value;
   Taped result;
   if (IsCourse(figure)) {
@@ -125,14 +124,20 @@ FigureValue FigureValues::Of(const Figure& figure, bool with_derivatives) {
   value.value = result.value;
   if (!with_derivatives) return value;
   tape_.Seed(result.index, 1);
-  tape_.Sweep(1);
+  for (auto used = used_.rbegin(); used != used_.rend(); ++used) {
+    tape_.Sweep(used->variable + 1);
+    used->by = tape_.Take(used->variable);
+    tape_.Rewind(used->variable);
+  }
   Collect(&value);
   return value;
 }
 
 void FigureValues::Collect(FigureValue* value) {
   std::vector<double> by(numbers_.size(), 0.0);
-  for (const auto& [index, number] : used_) by[number] += tape_.Take(index);
+  for (const Used& used : used_) {
+    if (!used.is_load) by[used.number] += used.by;
+  }
   const auto part = [&](size_t from, size_t to) {
     return std::vector<double>(by.begin() + static_cast<ptrdiff_t>(from),
                                by.begin() + static_cast<ptrdiff_t>(to));
@@ -149,14 +154,15 @@ void FigureValues::CollectLoads(FigureValue* value) {
   LoadRows<double>& by_loads = value->by_loads;
   by_loads.layout = layout_;
   std::vector<double> row(layout_.width());
-  auto used = used_loads_.begin();
+  auto used = used_.begin();
   for (size_t pose = 0; pose < masses_; ++pose) {
     const size_t from = pose * row.size();
     std::fill(row.begin(), row.end(), 0.0);
     bool matters = value->by_times[pose] != 0;
-    for (; used != used_loads_.end() && used->second < from + row.size(); ++used) {
-      double& by = row[used->second - from] += tape_.Take(used->first);
-      matters = matters || by != 0;
+    for (; used != used_.end() && (!used->is_load || used->number < from + row.size()); ++used) {
+      if (!used->is_load) continue;
+      row[used->number - from] += used->by;
+      matters = matters || used->by != 0;
     }
     if (!matters) continue;
     by_loads.poses.push_back(pose);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <utility>
 #include <vector>
 
 #include "vmech/base/tape/tape.h"
@@ -58,7 +57,14 @@ class FigureValues {
   size_t masses_ = 0, cycle_ = 0, requests_ = 0;
   std::vector<size_t> bearings_, paths_;  // where each of them has its requests
   TapeOf<double> tape_;
-  std::vector<std::pair<int, size_t>> used_, used_loads_;  // on the tape, among the numbers
+  /// A number that a figure is made of.
+  struct Used {
+    int variable;   // on the tape
+    bool is_load;   // of loads_, else of numbers_
+    size_t number;  // in these
+    double by = 0;  // the figure's derivative
+  };
+  std::vector<Used> used_;  // in the order of the tape
 };
 
 /// The derivative of a figure by the parameter of `change`, but for what it owes to the loads.

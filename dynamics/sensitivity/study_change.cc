@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <type_traits>
+#include <utility>
 
 #include "vmech/dynamics/sensitivity/study_numbers.h"
 
@@ -147,9 +148,9 @@ StudyChange ChangeOfStudy(const PreparedStudy& prepared, const Motion& motion, c
   std::array<std::vector<double>, 5> numbers, stiffnesses;
   for (size_t k = 0; k < numbers.size(); ++k) {
     const double there = value + (static_cast<double>(k) - 2) * step;
-    const LoadStudy study = at(there);
-    numbers[k] = NumbersOfStudy(study);
+    LoadStudy study = at(there);
     stiffnesses[k] = StiffnessesOf(study);
+    numbers[k] = NumbersOfStudy(std::move(study));
     if (numbers[k].size() == count && stiffnesses[k].size() == stiffnesses[0].size()) continue;
     throw std::invalid_argument(
         fmt::format("at {:.6g} the study has another form than at {:.6g} ({} numbers, not {}): a "
