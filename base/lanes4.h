@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstring>
 
-#include "vmech/base/dual.h"
 #include "vmech/base/eigen.h"
 #include "vmech/base/lanes.h"
 
@@ -114,9 +113,6 @@ inline void StoreLanes(const Lanes4* values, int count, double* row, ptrdiff_t s
   }
 }
 
-/// Four numbers that are computed with at once, and the derivative of each.
-using Dual4 = DualOf<Lanes4>;
-
 }  // namespace vmech
 
 template <>
@@ -154,14 +150,4 @@ struct Eigen::ScalarBinaryOpTraits<double, vmech::Lanes4, Operation> {
 template <typename Operation>
 struct Eigen::ScalarBinaryOpTraits<vmech::Lanes4, double, Operation> {
   using ReturnType = vmech::Lanes4;
-};
-
-// As those of Lanes4.
-template <int size>
-struct Eigen::internal::compute_default_alignment<vmech::Dual4, size> {
-  enum { value = 0 };
-};
-template <>
-struct Eigen::internal::compute_default_alignment<vmech::Dual4, Eigen::Dynamic> {
-  enum { value = EIGEN_MAX_ALIGN_BYTES };
 };

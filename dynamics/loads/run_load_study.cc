@@ -21,6 +21,7 @@
 #include "vmech/dynamics/loads/pose/external_loads.h"
 #include "vmech/dynamics/loads/pose/pose_loads.h"
 #include "vmech/dynamics/loads/pose/store_pose_loads.h"
+#include "vmech/dynamics/loads/pose_warnings.h"
 #include "vmech/dynamics/loads/rule_dependence.h"
 #include "vmech/dynamics/loads/study_plausibility.h"
 #include "vmech/dynamics/loads/track_motion.h"
@@ -29,8 +30,7 @@
 namespace vmech {
 namespace {
 
-constexpr size_t kChunk = 64;             // poses a thread takes at a time
-constexpr double kNearDeadCentre = 1e-8;  // pivots are squares; looked at closely below this
+constexpr size_t kChunk = 64;  // poses a thread takes at a time
 
 void RequireInsideTables(const LoadModel& model, const Motion& motion) {
   for (size_t i = 0; i < motion.size(); ++i) {
@@ -291,45 +291,18 @@ void WatchLimits(const LoadStudy& study, LoadStudyResult* result) {
   }
 }
 
-constexpr double kRounding = 1e-7;  // of the largest force, along an idle freedom
-
 /// A load along a freedom without inertia has no answer.
 void RefuseUnresisted(const LoadModel& model, double largest_force, const LoadStudyResult& result) {
-  const double largest = largest_force * std::max(1.0, model.tree.length);
+  const double rounding = RoundingAlongIdle(model, largest_force);
   const std::vector<PoseState>& states = result.poses.arrays().states;
   for (size_t i = 0; i < states.size(); ++i) {
     const double unresisted = states[i].unresisted;
-    if (unresisted <= kRounding * largest) continue;
+    if (unresisted <= rounding) continue;
     throw std::runtime_error(fmt::format(
         "pose {} (t = {:.6g} s): a load of {:.4g} N or N m acts along an idle freedom ({}), and "
         "nothing resists it: no drive, no inertia. Leave the load out, or give the link inertia "
         "and a drive",
         i, result.poses[i].time, unresisted, fmt::join(result.idle, ", ")));
-  }
-}
-
-/// What sets an idle freedom moving makes another motion than that which is taken.
-void WarnOfDrivenIdle(const LoadModel& model, double largest_force, LoadStudyResult* result) {
-  const std::vector<PoseState>& states = result->poses.arrays().states;
-  if (model.idle == 0 || states.empty()) return;
-  const auto most = std::max_element(
-      states.begin(), states.end(),
-      [](const PoseState& a, const PoseState& b) { return a.along_idle < b.along_idle; });
-  if (most->along_idle <= kRounding * largest_force * std::max(1.0, model.tree.length)) return;
-  result->warnings.push_back(fmt::format(
-      "friction, springs or loads from outside act with up to {:.4g} N or N m (pose {}) along an "
-      "idle freedom ({}), and would set it moving; the loads are those of links that have not "
-      "gathered that motion. Take off what acts along it, or simulate (`vmech simulate`)",
-      most->along_idle, most - states.begin(), fmt::join(result->idle, ", ")));
-}
-
-void FindSingularPoses(const LoadModel& model, const Motion& motion, LoadStudyResult* result) {
-  const LoadArrays& loads = result->poses.arrays();
-  for (size_t i = 0; i < loads.pose_count(); ++i) {
-    if (loads.smallest_pivots[i] < kNearDeadCentre &&
-        DistanceFromDeadCentre(model.tree, model.partition, motion.q(i)) < kSingularTolerance) {
-      result->singular_poses.push_back(i);
-    }
   }
 }
 
@@ -340,11 +313,6 @@ void Summarise(const LoadModel& model, const Motion& motion, double largest_forc
   WarnOfDrivenIdle(model, largest_force, result);
   FindSingularPoses(model, motion, result);
   AddFrictionWarnings(model.tree.mechanism, result);
-  if (!result->singular_poses.empty()) {
-    result->warnings.push_back(fmt::format(
-        "{} pose(s), the first of them {}, lie at a dead centre: loads grow without bound there",
-        result->singular_poses.size(), result->singular_poses.front()));
-  }
 }
 
 }  // namespace

@@ -156,6 +156,16 @@ TEST(RefusedStudy, StopsWhenItsProgressSaysSo) {
   EXPECT_THAT(Refusal(LongStudy("slider-crank"), options), HasSubstr("stopped"));
 }
 
+TEST(DeadCentres, AreWarnedOfBesideThemToo) {
+  LoadStudy study = StudyOf("square-four-bar");
+  const auto warned = testing::Contains(HasSubstr("beside a dead centre, pose 1 by"));
+  study.drives[0].law = MotionLaw::Uniform(M_PI - 0.4, 1);
+  study.times = {0, 0.39};
+  EXPECT_THAT(RunLoadStudy(study).warnings, testing::Not(warned));
+  study.times = {0, 0.4 - 3e-5};
+  EXPECT_THAT(RunLoadStudy(study).warnings, warned);
+}
+
 TEST(IdleFreedoms, TheSpinOfTheRodOfAnRssrIsListed) {
   const LoadStudyResult result = RunLoadStudy(StudyOf("rssr"));
   EXPECT_EQ(result.mobility, 2);
