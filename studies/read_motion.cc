@@ -257,15 +257,17 @@ std::vector<Node> DrivesOf(const Node& motion) {
 
 }  // namespace
 
-bool ReadDriven(const Node& node, const Mechanism& mechanism, JointDrive* drive) {
+bool ReadDriven(const Node& node, const Mechanism& mechanism, JointDrive* drive, bool balls) {
   drive->joint = FindPart(node["joint"], "joint", mechanism.joints);
   if (drive->joint < 0) return false;
-  const int freedoms = FreedomsOf(mechanism.joints[drive->joint].type);
-  if (freedoms == 0 || mechanism.joints[drive->joint].type == JointType::kSpherical) {
-    node["joint"].Error("this joint has no freedom that a motor can drive");
+  const JointType type = mechanism.joints[drive->joint].type;
+  const bool ball = type == JointType::kSpherical;
+  if (FreedomsOf(type) == 0 || (ball && !balls)) {
+    node["joint"].Error(fmt::format("a {} joint has no {}; name another one", NameOf(type),
+                                    ball ? "single coordinates" : "freedom"));
     return false;
   }
-  drive->freedom = ReadFreedom(node, mechanism.joints[drive->joint].type);
+  drive->freedom = ReadFreedom(node, type);
   return true;
 }
 

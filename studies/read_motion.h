@@ -26,8 +26,10 @@ bool CheckColumns(const Node& node, const CsvTable& table, const std::vector<std
 /// The index of the part that a node names in a list; -1 if there is none, which is reported.
 template <typename Part>
 int FindPart(const Node& node, std::string_view kind, const std::vector<Part>& parts) {
+  const bool scalar = node.kind() == Node::Kind::kScalar;
+  const size_t errors_before = scalar ? node.document().error_count() : 0;
   const std::string name = node.Text();
-  if (node.kind() != Node::Kind::kScalar) return -1;
+  if (!scalar || node.document().error_count() > errors_before) return -1;
   std::vector<std::string> names;
   for (const Part& part : parts) names.push_back(part.name);
   for (size_t i = 0; i < names.size(); ++i) {
@@ -43,9 +45,11 @@ bool IsRotation(JointType type, int freedom);
 /// The value of `motion` for a structure that cannot move: one pose, no drive.
 constexpr std::string_view kStill = "still";
 
-/// The joint and the freedom that a node names by `joint` and `freedom`. False if it has none that
-/// a motor can drive, which is reported.
-bool ReadDriven(const Node& node, const Mechanism& mechanism, JointDrive* drive);
+/// The joint and the freedom that a node names by `joint` and `freedom`. False if there is none,
+/// which is reported.
+/// @param balls whether those of a spherical joint count, which have rates and no coordinates
+bool ReadDriven(const Node& node, const Mechanism& mechanism, JointDrive* drive,
+                bool balls = false);
 
 /// A speed from `rpm` or `speed` [rad/s] or [m/s].
 double ReadSpeed(const Node& node, bool rotates, const Units& units);

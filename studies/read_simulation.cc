@@ -30,9 +30,9 @@ struct FreedomUnits {
 };
 
 /// The joint and the freedom that an entry names; no joint if there is none, which is reported.
-FreedomId ReadFreedomId(const Node& node, const Mechanism& mechanism) {
+FreedomId ReadFreedomId(const Node& node, const Mechanism& mechanism, bool balls = false) {
   JointDrive driven;
-  if (!ReadDriven(node, mechanism, &driven)) return {};
+  if (!ReadDriven(node, mechanism, &driven, balls)) return {};
   return {driven.joint, driven.freedom};
 }
 
@@ -49,6 +49,16 @@ TimeTable ReadForceTable(const Node& node, double unit, const Units& units,
     return {};
   }
   return force;
+}
+
+/// The table repeats after a period, which it must neither exceed nor end with a jump.
+void ReadForcePeriod(const Node& node, double span, const Units& units, TimeTable* force) {
+  force->period = node.Positive(units.time);
+  if (span > force->period * (1 + 1e-9)) {
+    node.Error(fmt::format("the table takes longer, {:.6g} s", span));
+  } else if (span >= force->period * (1 - 1e-9) && force->values.back() != force->values.front()) {
+    node.Error("the last row of the table is one period after the first, but has another value");
+  }
 }
 
 /// What a controller wants: a position to hold, or a speed.
@@ -81,14 +91,16 @@ JointMotor ReadMotor(const Node& node, const Units& units, const std::filesystem
   motor.at = ReadFreedomId(node, mechanism);
   if (motor.at.joint < 0) return motor;
   const FreedomUnits unit(units, mechanism, motor.at);
-  const bool controls = node["hold"] || node["speed"] || node["rpm"];
-  if (!!node["force"] + !!node["table"] + controls != 1) {
+  const bool turns = node["speed"] || node["rpm"], controls = node["hold"] || turns;
+  if (!!node["force"] + !!node["table"] + !!node["hold"] + turns != 1) {
     node.KeyError(
         "a motor has one of 'force', 'table' (of forces), 'hold' (a position), 'speed' "
         "and 'rpm'");
     return motor;
   }
   if (const Node most = node["max_force"]) motor.max_force = most.Positive(unit.force);
+  const Node period = node["period"];
+  if (period && !node["table"]) period.KeyError("used with a table only");
   if (controls) {
     const double start = mechanism.joints[motor.at.joint].start[motor.at.freedom];
     ReadController(node, unit, start, units, &motor);
@@ -99,7 +111,10 @@ JointMotor ReadMotor(const Node& node, const Units& units, const std::filesystem
   }
   if (node["table"]) {
     motor.force = ReadForceTable(node["table"], unit.force, units, folder);
-    if (const Node period = node["period"]) motor.force.period = period.Positive(units.time);
+    if (period && !motor.force.at.empty()) {
+      const double span = motor.force.at.back() - motor.force.at.front();
+      ReadForcePeriod(period, span, units, &motor.force);
+    }
   } else {
     motor.force = {{0}, {node["force"].Number(unit.force)}};
   }
@@ -109,7 +124,7 @@ JointMotor ReadMotor(const Node& node, const Units& units, const std::filesystem
 StartRate ReadStartRate(const Node& node, const Units& units, const Mechanism& mechanism) {
   StartRate rate;
   if (!node.CheckKeys({"joint"}, {"freedom", "rpm", "speed"})) return rate;
-  rate.at = ReadFreedomId(node, mechanism);
+  rate.at = ReadFreedomId(node, mechanism, true);
   if (rate.at.joint < 0) return rate;
   if (!node["rpm"] && !node["speed"]) node.KeyError("give 'rpm' or 'speed'");
   const FreedomUnits unit(units, mechanism, rate.at);
@@ -175,12 +190,13 @@ SimulationOptions ReadOptions(const Node& node) {
        {NameOf(SimulationMethod::kIdas), SimulationMethod::kIdas}},
       SimulationMethod::kAutomatic);
   if (const Node tolerance = node["tolerance"]) {
-    options.relative_tolerance = options.absolute_tolerance = tolerance.Positive();
-  }
-  try {
-    options.Validate();
-  } catch (const std::invalid_argument& defect) {
-    node["tolerance"].Error(defect.what());
+    options.relative_tolerance = options.absolute_tolerance =
+        tolerance.Number(options.relative_tolerance);
+    try {
+      options.Validate();
+    } catch (const std::invalid_argument& defect) {
+      tolerance.Error(defect.what());
+    }
   }
   return options;
 }

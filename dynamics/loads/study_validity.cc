@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -90,6 +91,16 @@ void RequireLoad(const std::string& field, const LoadStudy& study, const Externa
 
 }  // namespace
 
+void RequireCovered(const std::string& field, double begins, double ends,
+                    const std::vector<double>& times) {
+  constexpr double kRounding = 1e-9;
+  const double slack = kRounding * std::max(std::abs(times.front()), std::abs(times.back()));
+  if (begins <= times.front() + slack && ends >= times.back() - slack) return;
+  Refuse(field, fmt::format(" is a table from {:.6g} to {:.6g} s, but the times go from {:.6g} to "
+                            "{:.6g} s; extend the table",
+                            begins, ends, times.front(), times.back()));
+}
+
 void RequireValid(const LoadStudy& study) {
   RequireValid(study.mechanism);
   if (!study.drives.empty() && study.hand) {
@@ -100,9 +111,15 @@ void RequireValid(const LoadStudy& study) {
   RequireIncreasing("times", study.times);
   RequirePeriod("cycle", study.cycle, study.times);
   for (size_t k = 0; k < study.drives.size(); ++k) {
-    RequireDrive(fmt::format("drives[{}]", k), study.mechanism, study.drives[k]);
+    const std::string field = fmt::format("drives[{}]", k);
+    RequireDrive(field, study.mechanism, study.drives[k]);
+    const MotionLaw& law = study.drives[k].law;
+    RequireCovered(field + ".law", law.begins(), law.ends(), study.times);
   }
-  if (study.hand) RequireHand(study.mechanism, *study.hand);
+  if (study.hand) {
+    RequireHand(study.mechanism, *study.hand);
+    RequireCovered("hand.law", study.hand->law.begins(), study.hand->law.ends(), study.times);
+  }
   for (size_t k = 0; k < study.external.size(); ++k) {
     RequireLoad(fmt::format("external[{}]", k), study, study.external[k]);
   }

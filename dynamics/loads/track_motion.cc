@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 
@@ -79,6 +80,7 @@ class Tracker {
   }
 
   void Advance(double time, size_t pose) {
+    AllowForTurns();
     if (study_.hand) return Follow(time, pose);
     target_.clear();
     for (const JointDrive& drive : study_.drives) target_.push_back(drive.law.At(time).position);
@@ -89,6 +91,7 @@ class Tracker {
   /// Four poses at once, if their predictions are good enough; otherwise nothing is done.
   bool AdvancePacket(const double* times) {
     if (study_.hand || model_.idle > 0 || history_ < 3) return false;
+    AllowForTurns();
     const size_t first = motion_.size();
     for (int lane = 0; lane < Lanes4::kLanes; ++lane) RecordDrives(times[lane]);
     PredictPacket(first);
@@ -132,6 +135,12 @@ class Tracker {
   /// trusted to stay on the branch.
   static constexpr double kTrustedShare = 0.5;
   static constexpr double kTrustedTurn = 0.02;
+
+  /// An angle of many turns has lost the digits that its whole turns take.
+  void AllowForTurns() {
+    constexpr double kDigits = 4 * std::numeric_limits<double>::epsilon();
+    tolerance_ = std::max(tolerance_, kDigits * q_.lpNorm<Eigen::Infinity>());
+  }
 
   /// Moves all drives to the target, in halves where one step is not safe.
   void MoveTo(const std::vector<double>& target, double time, size_t pose, int depth) {

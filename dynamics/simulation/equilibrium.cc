@@ -19,12 +19,21 @@ constexpr double kLongestStep = 0.3;  // [rad], or characteristic lengths
 constexpr double kBalanced = 1e-13, kRounding = 1e-9;
 constexpr double kNeutral = 1e-9;
 
+/// Of all links, at the characteristic length.
+double Weight(const KinematicTree& tree) {
+  double mass = 0;
+  for (const TreeNode& node : tree.nodes) mass += node.mass;
+  return mass * tree.mechanism.gravity_W.norm() * tree.length;
+}
+
 /// Everything in radians and characteristic lengths.
 class Descent {
  public:
-  Descent(SmallMotions* motions, Equilibrium* result) : motions_(*motions), result_(*result) {}
+  Descent(SmallMotions* motions, Equilibrium* result)
+      : motions_(*motions), result_(*result), weight_(Weight(motions->tree())) {}
 
   void Go() {
+    const char* why = "it has not come to rest";
     for (; result_.iterations < kIterations; ++result_.iterations) {
       FindStiffness();
       if (force_.lpNorm<Eigen::Infinity>() <= kBalanced * size_) {
@@ -32,12 +41,12 @@ class Descent {
         return;
       }
       if (Step()) continue;
-      // Rounding may leave more than the bound above.
-      result_.found = force_.lpNorm<Eigen::Infinity>() <= kRounding * size_;
-      if (!result_.found) Fail("no step along the forces brings them nearer to a balance");
-      return;
+      why = "no step along the forces brings them nearer to a balance";
+      break;
     }
-    Fail("it has not come to rest");
+    // Rounding may leave more than the bound above.
+    result_.found = force_.lpNorm<Eigen::Infinity>() <= kRounding * size_;
+    if (!result_.found) Fail(why);
   }
 
   Stability Judge() const {
@@ -62,7 +71,7 @@ class Descent {
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(0.5 * (K + K.transpose()));
     stiffnesses_ = eigen.eigenvalues();
     directions_ = eigen.eigenvectors();
-    size_ = std::max({size_, K.lpNorm<Eigen::Infinity>(), force_.lpNorm<Eigen::Infinity>()});
+    size_ = std::max({K.lpNorm<Eigen::Infinity>(), force_.lpNorm<Eigen::Infinity>(), weight_});
     result_.residual =
         motions_.Force(motions_.q(), VectorXd::Zero(motions_.freedoms())).lpNorm<Eigen::Infinity>();
   }
@@ -97,7 +106,8 @@ class Descent {
   Equilibrium& result_;
   VectorXd force_, stiffnesses_;
   MatrixXd directions_;
-  double size_ = 0;
+  double size_ = 0;  ///< of forces a radian away, at this pose: near a singular one they are huge
+  double weight_;
 };
 
 }  // namespace

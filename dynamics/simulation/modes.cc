@@ -17,25 +17,25 @@ namespace {
 /// Of the largest eigenvalue: less is rounding.
 constexpr double kNone = 1e-9;
 
-/// Freedoms that have inertia, and the others, whose springs give way at once.
+/// Motions that have inertia; along the others springs give way at once.
 struct Condensed {
   MatrixXd M, D, K;
   MatrixXd motions;  ///< [freedoms, those with inertia]
 };
 
-Condensed Condense(const MatrixXd& M, const MatrixXd& D, const MatrixXd& K,
-                   const VectorXd& least_inertia) {
-  std::vector<Eigen::Index> with, without;
-  for (Eigen::Index i = 0; i < M.rows(); ++i) {
-    (M(i, i) > least_inertia[i] ? with : without).push_back(i);
+/// @param scale what of each freedom counts as one; inertia is compared in these units
+Condensed Condense(const MatrixXd& M, const MatrixXd& D, const MatrixXd& K, const VectorXd& scale,
+                   double no_inertia) {
+  const auto unit = scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> inertia(MatrixXd(unit * M * unit));
+  const auto n = M.rows(), without = (inertia.eigenvalues().array() <= no_inertia).count();
+  const MatrixXd light = unit * inertia.eigenvectors().leftCols(without);
+  MatrixXd motions = unit * inertia.eigenvectors().rightCols(n - without);
+  const MatrixXd K_light = light.transpose() * K * light;
+  const double stiffest = (unit * K * unit).lpNorm<Eigen::Infinity>();
+  if (without > 0 && K_light.lpNorm<Eigen::Infinity>() > kNone * stiffest) {
+    motions -= light * Eigen::LDLT<MatrixXd>(K_light).solve(light.transpose() * K * motions);
   }
-  MatrixXd motions = MatrixXd::Zero(M.rows(), static_cast<Eigen::Index>(with.size()));
-  for (size_t i = 0; i < with.size(); ++i) motions(with[i], static_cast<Eigen::Index>(i)) = 1;
-  const MatrixXd K_oo = K(without, without);
-  const Eigen::LDLT<MatrixXd> factors(K_oo);
-  const bool springs =
-      !without.empty() && K_oo.lpNorm<Eigen::Infinity>() > kNone * K.lpNorm<Eigen::Infinity>();
-  if (springs) motions(without, Eigen::all) = -factors.solve(K(without, with));
   const auto reduced = [&](const MatrixXd& A) -> MatrixXd {
     return motions.transpose() * A * motions;
   };
@@ -101,6 +101,15 @@ bool IsSymmetric(const MatrixXd& K) {
   return (K - K.transpose()).lpNorm<Eigen::Infinity>() <= kNone * K.lpNorm<Eigen::Infinity>();
 }
 
+/// Of a mechanism without inertia along any freedom.
+Stability JudgeBySprings(const MatrixXd& K) {
+  const VectorXd k =
+      Eigen::SelfAdjointEigenSolver<MatrixXd>(0.5 * (K + K.transpose())).eigenvalues();
+  const double none = kNone * k.lpNorm<Eigen::Infinity>();
+  if (k.minCoeff() < -none) return Stability::kUnstable;
+  return k.minCoeff() > none ? Stability::kStable : Stability::kNeutral;
+}
+
 void FindModesOf(SmallMotions* motions, Modes* modes) {
   const VectorXd& scale = motions->scale();
   modes->mass = motions->Inertia();
@@ -110,9 +119,12 @@ void FindModesOf(SmallMotions* motions, Modes* modes) {
   for (const int v : motions->velocities()) {
     modes->freedoms.push_back(NameOfVelocity(motions->tree(), v));
   }
-  const VectorXd least = motions->prepared().model.no_inertia * scale.cwiseAbs2().cwiseInverse();
-  const Condensed c = Condense(modes->mass, modes->damping, modes->stiffness, least);
-  if (c.M.rows() == 0) return;
+  const Condensed c = Condense(modes->mass, modes->damping, modes->stiffness, scale,
+                               motions->prepared().model.no_inertia);
+  if (c.M.rows() == 0) {
+    modes->stability = JudgeBySprings(modes->stiffness);
+    return;
+  }
   const VectorXd all = VelocityScale(motions->tree());
   const bool undamped = c.D.lpNorm<Eigen::Infinity>() == 0 && IsSymmetric(c.K);
   (undamped ? AddUndamped : AddDamped)(c, c.motions, all, modes);

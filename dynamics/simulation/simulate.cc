@@ -227,13 +227,19 @@ class Run {
     if (result_.status != SimulationStatus::kNotRun || passed > kNoTime * (end() - start())) return;
     const FreedomId at = result_.events.empty() ? FreedomId{} : result_.events.back().at;
     const Mechanism& mechanism = equations_.tree().mechanism;
+    const std::string drives =
+        simulation_.drives.empty()
+            ? ""
+            : "; a drive moves as prescribed whatever it takes: where it runs into a limit, end "
+              "the run there (`watch` with `ends`), widen the limit, or take a motor";
     Stop(SimulationStatus::kFailed,
          fmt::format(
              "contacts stick, slip, open and close {} times within {:.3g} s, last that of "
              "'{}', and nothing else happens; give limits some restitution or none, or "
-             "friction to fewer joints",
+             "friction to fewer joints{}",
              kMany, passed,
-             at.joint < 0 ? "a drive" : NameOfFreedom(mechanism.joints[at.joint], at.freedom)));
+             at.joint < 0 ? "a drive" : NameOfFreedom(mechanism.joints[at.joint], at.freedom),
+             drives));
   }
 
   /// After a step that has failed: over a singular pose, or with equations chosen anew.

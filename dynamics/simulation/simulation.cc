@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "vmech/base/check_range.h"
+#include "vmech/dynamics/loads/pose/external_loads.h"
 #include "vmech/dynamics/loads/study_validity.h"
 #include "vmech/mechanisms/validity.h"
 
@@ -103,6 +104,20 @@ void RequireTableCoordinate(const Simulation& simulation) {
   }
 }
 
+/// Nothing is known of a load beyond its table.
+void RequireCovered(const std::string& field, const ExternalLoad& load,
+                    const Simulation& simulation) {
+  const bool over_drive = load.over == ExternalLoad::Over::kDriveCoordinate;
+  if (over_drive && (simulation.table_coordinate || simulation.drives.empty())) return;
+  for (const double time : simulation.times) {
+    const double at = over_drive ? simulation.drives[0].law.At(time).position : time;
+    if (!OutsideTable(load, at)) continue;
+    Refuse(field, fmt::format(": its table covers {:.6g} to {:.6g}, but {:.6g} is asked for at t = "
+                              "{:.6g} s; extend the table or give it a `period`",
+                              load.at.front(), load.at.back(), at, time));
+  }
+}
+
 }  // namespace
 
 double TimeTable::At(double time) const {
@@ -132,10 +147,23 @@ void RequireValid(const Simulation& simulation) {
            "minimum_norm");
   }
   for (size_t k = 0; k < simulation.motors.size(); ++k) {
-    RequireMotor(fmt::format("motors[{}]", k), mechanism, simulation.motors[k]);
+    const std::string field = fmt::format("motors[{}]", k);
+    const JointMotor& motor = simulation.motors[k];
+    RequireMotor(field, mechanism, motor);
+    if (motor.law == JointMotor::Law::kForce) continue;
+    RequireCovered(field + ".wanted", motor.wanted.begins(), motor.wanted.ends(), simulation.times);
   }
-  if (simulation.hand) RequireHand(mechanism, *simulation.hand);
+  if (simulation.hand) {
+    RequireHand(mechanism, *simulation.hand);
+    const HandLaw& law = simulation.hand->law;
+    if (!simulation.hand->hand) {
+      RequireCovered("hand.law", law.begins(), law.ends(), simulation.times);
+    }
+  }
   RequireTableCoordinate(simulation);
+  for (size_t k = 0; k < simulation.external.size(); ++k) {
+    RequireCovered(fmt::format("external[{}]", k), simulation.external[k], simulation);
+  }
   for (size_t k = 0; k < simulation.rebounds.size(); ++k) {
     const std::string field = fmt::format("rebounds[{}]", k);
     RequireCoordinate(field + ".at", mechanism, simulation.rebounds[k].at);

@@ -121,11 +121,13 @@ struct SimulationResult {
 
   size_t size() const { return times.size(); }  ///< poses that were reached
   /// [nq] of a pose, a view
-  Eigen::Map<const VectorXd> Q(size_t pose) const { return {&q[pose * tree.nq], tree.nq}; }
+  Eigen::Map<const VectorXd> Q(size_t pose) const { return {q.data() + pose * tree.nq, tree.nq}; }
   /// [nv] of a pose, a view
-  Eigen::Map<const VectorXd> V(size_t pose) const { return {&v[pose * tree.nv], tree.nv}; }
+  Eigen::Map<const VectorXd> V(size_t pose) const { return {v.data() + pose * tree.nv, tree.nv}; }
   /// [nv] of a pose, a view
-  Eigen::Map<const VectorXd> Vdot(size_t pose) const { return {&vdot[pose * tree.nv], tree.nv}; }
+  Eigen::Map<const VectorXd> Vdot(size_t pose) const {
+    return {vdot.data() + pose * tree.nv, tree.nv};
+  }
   std::string BriefReport() const;  ///< a line
 };
 

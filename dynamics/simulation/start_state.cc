@@ -76,7 +76,7 @@ StartState FindStartState(const PreparedSimulation& prepared, EquationsOfMotion*
   StartState start{prepared.q, VectorXd::Zero(tree.nv), {}};
   equations->Close(time, start.q.data());
   ConstrainedMotion& motion = equations->motion();
-  if (!prepared.simulation.start_rates.empty()) {
+  if (!prepared.simulation.start_rates.empty() && motion.freedoms() > 0) {
     const GivenRates given = FindGivenRates(prepared, &motion, start.q);
     start.v = motion.N() * LeastEnergy(motion.inertia(), given);
   }

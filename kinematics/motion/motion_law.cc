@@ -172,6 +172,8 @@ MotionLaw MotionLaw::TableWithDwells(const std::vector<double>& times,
   law.roughness_ = FindRoughness(times, values);
   const size_t last = times.size() - 1;
   if (last == 0) return Uniform(values[0], 0);
+  law.begins_ = times.front();
+  law.ends_ = times.back();
   for (size_t i = 0; i < last;) {
     const size_t first = i;
     const bool dwells_here = dwells[i];

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "vmech/base/pose.h"
@@ -35,6 +36,10 @@ class MotionLaw {
   MotionSample At(double t) const;
   /// The roughness of the table; zero for a uniform motion.
   const TableRoughness& roughness() const { return roughness_; }
+  /// The first and the last time of a table of two rows or more, beyond which nothing is known of
+  /// the motion [s]. Any other motion has no bounds.
+  double begins() const { return begins_; }
+  double ends() const { return ends_; }  ///< as begins()
 
  private:
   friend class HandLaw;
@@ -51,6 +56,8 @@ class MotionLaw {
   };
   std::vector<Piece> pieces_;
   TableRoughness roughness_;
+  double begins_ = -std::numeric_limits<double>::infinity();
+  double ends_ = std::numeric_limits<double>::infinity();
 };
 
 /// Pose, velocity and acceleration of a hand-held frame in the world.
@@ -73,6 +80,8 @@ class HandLaw {
   bool empty() const { return position_.empty(); }
   /// At a time [s]; outside the table by its first or last polynomials. Precondition: not empty.
   HandSample At(double t) const;
+  double begins() const { return position_[0].begins(); }  ///< as of a MotionLaw; not empty [s]
+  double ends() const { return position_[0].ends(); }      ///< the same
   /// The roughness of its positions [m/s^2].
   TableRoughness position_roughness() const { return Together(position_); }
   /// The roughness of its rotation vectors [rad/s^2].

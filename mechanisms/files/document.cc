@@ -198,8 +198,9 @@ std::string Node::Text(std::string fallback) const {
 }
 
 int Node::WordIndex(std::span<const std::string> words) const {
+  const size_t errors_before = document_ ? document_->error_count() : 0;
   const std::string word = Text();
-  if (word.empty() && kind() != Kind::kScalar) return -1;
+  if (kind() != Kind::kScalar || document_->error_count() > errors_before) return -1;
   const auto found = std::find(words.begin(), words.end(), word);
   if (found != words.end()) return static_cast<int>(found - words.begin());
   std::string hint = DidYouMean(word, words);

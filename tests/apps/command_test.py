@@ -505,6 +505,21 @@ class Loads(InFolder):
         self.assertEqual((self.folder / "json" / "loads.csv").read_bytes(),
                          (self.folder / "yaml" / "loads.csv").read_bytes())
 
+    def test_a_motor_goes_on_through_hundreds_of_turns(self):
+        (self.folder / "turns.yaml").write_text(
+            f'vmech_study: "1.0"\nmechanism: {EXAMPLES / "four-bar.yaml"}\n'
+            "motion: {joint: main, rpm: 60, turns: 1000.5, steps: 2001}\n", encoding="utf-8")
+        result = self.run_vmech("loads", "turns.yaml", "--out", "out")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        with (self.folder / "out" / "loads.csv").open(newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), 2002)
+        for name in ("main.fx", "main.fy", "drive.force"):
+            largest = max(abs(float(row[name])) for row in rows)
+            for turn in (2, 200, 2000):
+                self.assertAlmostEqual(float(rows[turn][name]), float(rows[0][name]),
+                                       delta=1e-9 * largest)
+
 
 class Failure(InFolder):
     def expect_untouched(self, code, *arguments):

@@ -260,6 +260,9 @@ class Simulate(unittest.TestCase):
         self.assertIn(f"{rate / math.sqrt(stiffness):.4f}"[:6], run.stdout)
         self.assertIn("'pivot' is at -1.57", run.stdout.replace("\u2212", "-"))
         self.assertIn("outside its limits", run.stdout)
+        empty = PENDULUM.split("    mass: 2")[0] + PENDULUM.split("zz: 0.166}\n")[1]
+        run = self.modes_of(0.3, empty)
+        self.assertIn("\nneutral, as far as can be told: ", run.stdout + run.stderr)
         falls = PENDULUM.replace("type: revolute", "type: prismatic").replace(
             "z: [0, 0, 1], x: [1, 0, 0]", "z: [0, 1, 0], x: [1, 0, 0]")
         run = self.modes_of(0, falls)
@@ -274,15 +277,106 @@ class Simulate(unittest.TestCase):
                 ("{steps: 3}", "the key 'duration' is missing"),
                 ("{duration: 1, motors: [{joint: pivot}]}", "a motor has one of 'force'"),
                 ("{duration: 1, rates: [{joint: pivo, speed: 1}]}", "did you mean 'pivot'"),
+                ("{duration: 1, motors: [{joint: pivot, hold: 1, speed: 2, stiffness: 3}]}",
+                 "a motor has one of 'force'"),
+                ("{duration: 1, motors: [{joint: pivot, force: 1, period: 2}]}",
+                 "used with a table only"),
+                ("{duration: 1, method: 3}", "expected text"),
+                ("{duration: 1, tolerance: 0}", "must be in [1e-14, 0.01]"),
+                ("{duration: 1, rates: [{joint: 3, speed: 1}]}", "expected text"),
                 ("{duration: 1, restitution: [{joint: pivot, restitution: 2}]}", "at most 1")):
             run = self.vmech("simulate", self.study(simulation), "--out", "out")
             self.assertEqual(run.returncode, 2, run.stdout)
             self.assertIn(words, run.stderr)
+            self.assertEqual(run.stderr.count("study.yaml:"), 1, run.stderr)
             self.assertFalse((FOLDER / "out").exists())
         self.assertIn("`vmech simulate` does that",
                       self.vmech("loads", self.study("{duration: 1}")).stderr)
         self.assertIn("`vmech loads` runs its motion",
                       self.vmech("simulate", EXAMPLES / "four-bar-study.yaml").stderr)
+
+    def test_a_body_on_a_ball_at_its_centre_keeps_its_angular_momentum(self):
+        moments = [0.02, 0.03, 0.045]
+        (FOLDER / "top.yaml").write_text(f"""
+vmech: "1.0"
+gravity: [0, 0, -9.81]
+ground: frame
+links:
+  frame: {{anchors: {{a: {{}}}}}}
+  body:
+    mass: 1
+    inertia: {{xx: {moments[0]}, yy: {moments[1]}, zz: {moments[2]}}}
+    anchors: {{a: {{}}}}
+joints: {{ball: {{type: spherical, connects: [frame/a, body/a], start: [0.3, -0.2, 0.1]}}}}
+""")
+        study = FOLDER / "study.yaml"
+        rates = "".join(f"{{joint: ball, freedom: r{k}, speed: {v}}}, "
+                        for k, v in zip("xyz", (0.1, 6, 0.2)))
+        study.write_text('vmech_study: "1.0"\nmechanism: top.yaml\n'
+                         f"simulation: {{duration: 6, steps: 60, rates: [{rates}]}}\n")
+        run = self.vmech("simulate", study, "--out", "out")
+        self.assertEqual(run.returncode, 0, run.stderr)
+
+        def momentum(row):
+            w, x, y, z = (float(row[f"body.q{k}"]) for k in "wxyz")
+            turn = [[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                    [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                    [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
+            rate = [float(row[f"body.w{k}"]) for k in "xyz"]
+            along = [moments[k] * sum(turn[i][k] * rate[i] for i in range(3)) for k in range(3)]
+            return [sum(turn[i][k] * along[k] for k in range(3)) for i in range(3)]
+
+        rows = self.rows("motion.csv")
+        size = math.hypot(*momentum(rows[0]))
+        self.assertAlmostEqual(size, math.hypot(0.02 * 0.1, 0.03 * 6, 0.045 * 0.2), delta=1e-12)
+        for row in rows:
+            self.assertLess(math.dist(momentum(row), momentum(rows[0])), 1e-7 * size)
+        turns = [float(row["ball.ry.rate"]) for row in self.rows("joints.csv")]
+        self.assertLess(min(turns), -5)  # about the middle axis it turns over
+
+    def test_what_cannot_move_stands_still_and_carries_its_weight(self):
+        triangle = PENDULUM.replace("START", "0").replace(
+            "x: [1, 0, 0]}}}\n  rod", "x: [1, 0, 0]}, b: {origin: [0.6, 0, 0]}}}\n  rod").replace(
+            "x: [1, 0, 0]}}\njoints", "x: [1, 0, 0]}, t: {origin: [0.3, 0.4, 0]}}\n"
+            "  strut: {anchors: {a: {}, t: {origin: [-0.3, 0.4, 0]}}}\njoints")
+        study = self.study("{duration: 1, steps: 4, rates: [{joint: pivot, speed: 3}]}", start=0)
+        (FOLDER / "pendulum.yaml").write_text(
+            triangle + "  foot: {type: revolute, connects: [frame/b, strut/a]}\n"
+            "  top: {type: revolute, connects: [rod/t, strut/t]}\n")
+        run = self.vmech("simulate", study, "--out", "out")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        last = self.rows("loads.csv")[4]
+        self.assertAlmostEqual(float(last["pivot.fy"]) + float(last["foot.fy"]), 2 * GRAVITY,
+                               places=9)
+        self.assertIn("do not allow pivot to start at 3",
+                      (FOLDER / "out" / "report.html").read_text(encoding="utf-8"))
+
+    def test_what_a_table_does_not_say_is_not_made_up(self):
+        (FOLDER / "angle.csv").write_text("t,value\n0,0\n1,1\n2,1.5\n")
+        (FOLDER / "late.csv").write_text("t,value\n0.5,0\n1,1\n9,1.5\n")
+        (FOLDER / "load.csv").write_text("t,fx\n0,1\n1,2\n")
+        (FOLDER / "turn.csv").write_text("pivot,fx\n0,1\n1,2\n")
+        external = "external: [{{link: rod, table: {}}}]\n"
+        slow = "{duration: 4, drives: [{joint: pivot, speed: 0.5}]}"
+        for simulation, extra, words in (
+                ("{duration: 4, drives: [{joint: pivot, table: angle.csv}]}", "",
+                 "drives[0].law is a table from 0 to 2 s, but the times go from 0 to 4 s"),
+                ("{duration: 4, drives: [{joint: pivot, table: late.csv}]}", "",
+                 "drives[0].law is a table from 0.5 to 9 s"),
+                ("{duration: 4}", external.format("load.csv"),
+                 "external[0]: its table covers 0 to 1, but"),
+                (slow, external.format("turn.csv"), "external[0]: its table covers 0 to 1, but"),
+                ("{duration: 1, motors: [{joint: pivot, table: angle.csv, period: 1}]}", "",
+                 "period: the table takes longer, 2 s"),
+                ("{duration: 1, motors: [{joint: pivot, table: angle.csv, period: 2}]}", "",
+                 "period: the last row of the table is one period after the first")):
+            run = self.vmech("simulate", self.study(simulation, 0, extra), "--out", "out")
+            self.assertEqual(run.returncode, 2, simulation + run.stdout)
+            self.assertIn(words, run.stderr)
+            self.assertFalse((FOLDER / "out").exists())
+        whole = self.study("{duration: 2, steps: 2, drives: [{joint: pivot, table: angle.csv}]}", 0)
+        self.assertEqual(self.vmech("simulate", whole, "--out", "out").returncode, 0)
+        self.assertAlmostEqual(float(self.rows("joints.csv")[2]["pivot.position"]), 1.5, places=12)
 
     def test_an_interruption_leaves_the_whole_of_what_was_computed(self):
         study = self.study("{duration: 100000, steps: 50000}")
