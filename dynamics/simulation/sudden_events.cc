@@ -7,16 +7,20 @@
 namespace vmech {
 namespace {
 
-/// The end of the narrowest interval at whose end, but not at whose beginning, `beyond` holds.
+struct Interval {
+  double before = 0, after = 0;
+};
+
+/// The narrowest interval at whose end, but not at whose beginning, `beyond` holds.
 template <typename Beyond>
-double Bisect(double from, double to, const Beyond& beyond) {
+Interval Bisect(double from, double to, const Beyond& beyond) {
   constexpr double kRounding = 1e-15;
   while (to - from > kRounding * std::max(std::abs(from), std::abs(to))) {
     const double middle = from + 0.5 * (to - from);
     if (middle <= from || middle >= to) break;
     (beyond(middle) ? to : from) = middle;
   }
-  return to;
+  return {from, to};
 }
 
 }  // namespace
@@ -26,7 +30,10 @@ SuddenEvents::SuddenEvents(const Simulation& simulation, EquationsOfMotion* equa
     : simulation_(simulation),
       equations_(*equations),
       state_at_(std::move(state_at)),
-      events_(*events) {}
+      events_(*events),
+      bounded_(equations->contacts().Limited()) {
+  for (const CoordinateWatch& watch : simulation.watches) bounded_.push_back(watch.at);
+}
 
 void SuddenEvents::Place(double time, const double* y) {
   equations_.Place(time, y, y + equations_.tree().nq);
@@ -43,18 +50,41 @@ void SuddenEvents::LookAround(double time, const VectorXd& y) {
   Place(time, y.data());
   equations_.forces().Remember(equations_.motion());
   equations_.contacts().Watch(equations_.motion());
-  watched_.clear();
-  for (const CoordinateWatch& watch : simulation_.watches) {
-    const JointLoad<double>& joint = equations_.motion().ws().loads[watch.at.joint];
-    watched_.push_back(joint.position[watch.at.freedom] - watch.value);
-  }
+  LookAtWatches();
+  rates_.clear();
+  for (const FreedomId& at : bounded_) rates_.push_back(RateOf(at));
 }
 
+void SuddenEvents::LookAtWatches() {
+  watched_.clear();
+  for (const CoordinateWatch& watch : simulation_.watches) watched_.push_back(DistanceFrom(watch));
+}
+
+/// Section by section, between which freedoms turn back that may have been beyond a limit.
 SuddenEvents::Found SuddenEvents::FindFirst(double from, double to) {
-  const bool changes = IsBeyondEvent(to);
-  if (changes) to = Bisect(from, to, [this](double time) { return IsBeyondEvent(time); });
-  const bool ends = PassWatches(from, &to);
-  return {to, changes && !ends, ends};
+  for (double end : TurningPoints(from, to)) {
+    const bool changes = IsBeyondEvent(end);
+    if (changes) end = Bisect(from, end, [this](double time) { return IsBeyondEvent(time); }).after;
+    const bool ends = PassWatches(from, &end);
+    if (changes || ends) return {end, changes && !ends, ends};
+    from = end;
+  }
+  return {to, false, false};
+}
+
+/// Where freedoms with limits or watches turn back in (from, to), just before they do; then `to`.
+std::vector<double> SuddenEvents::TurningPoints(double from, double to) {
+  std::vector<double> turning;
+  for (size_t i = 0; i < bounded_.size(); ++i) {
+    const auto turned = [&](double time) {
+      Place(time, state_at_(time));
+      return rates_[i] * RateOf(bounded_[i]) < 0;
+    };
+    if (rates_[i] != 0 && turned(to)) turning.push_back(Bisect(from, to, turned).before);
+  }
+  std::sort(turning.begin(), turning.end());
+  turning.push_back(to);
+  return turning;
 }
 
 /// Is the state at a time within the last step beyond an event?
@@ -70,8 +100,11 @@ bool SuddenEvents::IsBeyondEvent(double time) {
   return contacts.Releases(equations_.motion(), equations_.drives());
 }
 
-double SuddenEvents::Watched(const CoordinateWatch& watch, double time) {
-  Place(time, state_at_(time));
+double SuddenEvents::RateOf(const FreedomId& at) const {
+  return equations_.motion().ws().loads[at.joint].rate[at.freedom];
+}
+
+double SuddenEvents::DistanceFrom(const CoordinateWatch& watch) const {
   return equations_.motion().ws().loads[watch.at.joint].position[watch.at.freedom] - watch.value;
 }
 
@@ -81,16 +114,22 @@ bool SuddenEvents::PassWatches(double from, double* to) {
   for (size_t i = 0; i < simulation_.watches.size(); ++i) {
     const CoordinateWatch& watch = simulation_.watches[i];
     const double before = watched_[i];
-    const auto beyond = [&](double time) { return before * Watched(watch, time) <= 0; };
+    const auto beyond = [&](double time) {
+      Place(time, state_at_(time));
+      return before * DistanceFrom(watch) <= 0;
+    };
     if (before == 0 || !beyond(*to)) continue;
-    const double time = Bisect(from, *to, beyond);
+    const double time = Bisect(from, *to, beyond).after;
     beyond(time);
-    const JointLoad<double>& joint = equations_.motion().ws().loads[watch.at.joint];
-    events_.push_back({time, SimulationEvent::Kind::kReached, watch.at, watch.value,
-                       joint.rate[watch.at.freedom]});
+    events_.push_back(
+        {time, SimulationEvent::Kind::kReached, watch.at, watch.value, RateOf(watch.at)});
     if (!watch.ends_run) continue;
     ends = true;
     *to = time;
+  }
+  if (!simulation_.watches.empty()) {
+    Place(*to, state_at_(*to));
+    LookAtWatches();
   }
   return ends;
 }

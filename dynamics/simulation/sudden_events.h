@@ -46,7 +46,10 @@ class SuddenEvents {
 
   void Place(double time, const double* y);
   bool IsBeyondEvent(double time);
-  double Watched(const CoordinateWatch& watch, double time);
+  double RateOf(const FreedomId& at) const;
+  double DistanceFrom(const CoordinateWatch& watch) const;
+  void LookAtWatches();
+  std::vector<double> TurningPoints(double from, double to);
   bool PassWatches(double from, double* to);
   void FindContacts(double time, VectorXd* y);
   std::vector<StoppedHit> Rebound(double time, VectorXd* y);
@@ -58,7 +61,9 @@ class SuddenEvents {
   EquationsOfMotion& equations_;
   StateAt state_at_;
   std::vector<SimulationEvent>& events_;
-  std::vector<double> watched_;  ///< of each watch, how far it was at LookAround
+  std::vector<double> watched_;     ///< of each watch, how far it was where the section begins
+  std::vector<FreedomId> bounded_;  ///< freedoms with limits, and those that are watched
+  std::vector<double> rates_;       ///< of each of these at LookAround
 };
 
 }  // namespace vmech

@@ -96,6 +96,12 @@ bool Contacts::any_held() const {
                      [](const Stop& stop) { return stop.closed != 0; });
 }
 
+std::vector<FreedomId> Contacts::Limited() const {
+  std::vector<FreedomId> limited;
+  for (const Stop& stop : stops_) limited.push_back(stop.at);
+  return limited;
+}
+
 std::vector<RateRow> Contacts::Held() const {
   std::vector<RateRow> rows;
   for (const Friction& friction : frictions_) {

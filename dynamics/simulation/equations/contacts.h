@@ -20,7 +20,8 @@ class Contacts {
 
   /// No joint has dry friction or limits.
   bool empty() const { return frictions_.empty() && stops_.empty(); }
-  bool any_held() const;  ///< something rests or is closed
+  bool any_held() const;                   ///< something rests or is closed
+  std::vector<FreedomId> Limited() const;  ///< the freedoms that have limits
 
   /// The held rates.
   std::vector<RateRow> Held() const;

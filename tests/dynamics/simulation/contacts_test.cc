@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "simulated.h"
@@ -380,6 +381,25 @@ TEST(Simulate, EndsWhereAWatchedCoordinateIsReached) {
   EXPECT_NEAR(result.events[0].time, std::sqrt(1 / kGravity), 1e-9);
   EXPECT_NEAR(result.times.back(), std::sqrt(2 / kGravity), 1e-9);
   EXPECT_NEAR(result.Q(result.size() - 1)[0], 1, 1e-9);
+}
+
+/// A pendulum that is let go at 0 turns back at -pi, wherever that is within a step.
+TEST(Simulate, SeesWhatIsBarelyTouchedWithinAStep) {
+  for (const double depth : {1e-2, 1e-4, 1e-6}) {
+    const double touched = -std::numbers::pi + depth;
+    Simulation simulation;
+    simulation.mechanism = Pendulum();
+    simulation.watches = {{{0, 0}, touched, false}};
+    simulation.times = Times(2, 4);
+    EXPECT_EQ(Simulate(simulation, Tight(1e-10)).events.size(), 2U) << depth;
+    simulation.watches.clear();
+    simulation.mechanism.joints[0].lower = {touched};
+    simulation.rebounds = {{{0, 0}, 0.5}};
+    simulation.times = Times(2, 200);
+    const SimulationResult result = Simulate(simulation, Tight(1e-10));
+    EXPECT_GE(result.events.size(), 1U) << depth;
+    for (size_t i = 0; i < result.size(); ++i) EXPECT_GT(result.Q(i)[0], touched - 1e-9);
+  }
 }
 
 TEST(Simulate, KeepsWhatItHasWhenItIsStopped) {
