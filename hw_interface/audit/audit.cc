@@ -114,10 +114,6 @@ struct RecordingAudit::Parts {
         before(held.tree),
         now(held.tree),
         net(held.tree.nodes.size() + 1),
-        u(VectorXd::Zero(held.tree.nv)),
-        felt_v(u),
-        share_channel(ChannelOf(header, "inertia_share")),
-        losses_channel(ChannelOf(header, "remembered_losses")),
         loops("loops of the mechanism, closed to", held.tree.mechanism.tolerance, "-"),
         grasp("grasp frame from the coordinates, off by", kExact, "m, rad"),
         hand("hand in the world from the sample, off by", kExact, "m, rad"),
@@ -125,10 +121,15 @@ struct RecordingAudit::Parts {
         wanted("wrench from the mechanism to the safety filter, off by", kExact, "-"),
         sent("wrench from the filter to the device, off by", kExact, "-"),
         free("constraints along free motions, share of the largest wrench", kConstraint, "-"),
-        newton("force balance of every link, share of the largest", kNewton, "-") {
+        newton("force balance of every link, share of the largest", kNewton, "-"),
+        u(VectorXd::Zero(held.tree.nv)),
+        felt_v(u),
+        share_channel(ChannelOf(header, "inertia_share")),
+        losses_channel(ChannelOf(header, "remembered_losses")) {
     for (int i = 0; i < header.hands(); ++i) {
       hands.push_back({held.grasps[i],
                        VirtualCoupling(PromiseOf(header, i).coupling, held.grasps[i].kind, period),
+                       {},
                        {}});
     }
   }
