@@ -159,7 +159,7 @@ TEST(RefusedStudy, StopsWhenItsProgressSaysSo) {
 TEST(DeadCentres, AreWarnedOfBesideThemToo) {
   LoadStudy study = StudyOf("square-four-bar");
   const auto warned = testing::Contains(HasSubstr("beside a dead centre, pose 1 by"));
-  study.drives[0].law = MotionLaw::Uniform(M_PI - 0.4, 1);
+  study.drives[0].law = MotionLaw::Uniform(M_PI / 2 - 0.4, 1);  // flat after 0.4 s
   study.times = {0, 0.39};
   EXPECT_THAT(RunLoadStudy(study).warnings, testing::Not(warned));
   study.times = {0, 0.4 - 3e-5};
