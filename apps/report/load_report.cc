@@ -160,7 +160,8 @@ html::Tile BearingTile(const Report& report, size_t index) {
 }
 
 Markup Headline(const Report& report, const Cycle& cycle) {
-  std::vector<html::Tile> tiles = {LargestForceTile(report, cycle)};
+  std::vector<html::Tile> tiles;
+  if (!report.study.mechanism.joints.empty()) tiles.push_back(LargestForceTile(report, cycle));
   if (!report.study.drives.empty()) {
     tiles.push_back(DriveTile(report, cycle, HardestDrive(report)));
   }
