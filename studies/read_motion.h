@@ -46,8 +46,8 @@ bool IsRotation(JointType type, int freedom);
 constexpr std::string_view kStill = "still";
 
 /// The joint and the freedom that a node names by `joint` and `freedom`. False if there is none,
-/// which is reported.
-/// @param balls whether those of a spherical joint count, which have rates and no coordinates
+/// which is reported. `balls`: those of spherical joints count too, which have rates and no
+/// coordinates.
 bool ReadDriven(const Node& node, const Mechanism& mechanism, JointDrive* drive,
                 bool balls = false);
 

@@ -23,7 +23,7 @@ struct Condensed {
   MatrixXd motions;  ///< [freedoms, those with inertia]
 };
 
-/// @param scale what of each freedom counts as one; inertia is compared in these units
+/// `scale`: what of each freedom counts as one; inertia is compared in these units.
 Condensed Condense(const MatrixXd& M, const MatrixXd& D, const MatrixXd& K, const VectorXd& scale,
                    double no_inertia) {
   const auto unit = scale.asDiagonal();

@@ -67,7 +67,7 @@ struct TreeWorkspace {
 
   /// Where the columns of a loop begin; a loop between links that are one piece has none.
   const Vector6<T>* columns(size_t loop) const { return loop_columns.data() + first_column[loop]; }
-  Vector6<T>* columns(size_t loop) { return loop_columns.data() + first_column[loop]; }
+  Vector6<T>* columns(size_t loop) { return loop_columns.data() + first_column[loop]; }  ///< same
 };
 
 }  // namespace vmech
