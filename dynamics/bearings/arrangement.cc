@@ -34,7 +34,9 @@ void Arrangement::Validate() const {
 }
 
 template <typename T>
-std::array<Vector3<T>, 2> SharesOf(const std::vector<T>& z, int locating, const Wrench<T>& wrench) {
+std::array<Vector3<T>, 2> SharesOf(const std::vector<T>& positions, int locating,
+                                   const Wrench<T>& wrench) {
+  const std::vector<T>& z = positions;
   const Vector3<T>&f = wrench.force, &m = wrench.moment;
   Vector3<T> R_b = Vector3<T>::Zero();
   if (z.size() == 2) {
