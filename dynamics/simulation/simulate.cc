@@ -79,7 +79,7 @@ class Run {
     problem_.absolute_tolerances =
         AbsoluteTolerances(equations_.tree(), options.absolute_tolerance);
     problem_.max_step = options.max_step;
-    // What happens and is undone within a step is not seen.
+    // Within a step one turn of a freedom is seen (SuddenEvents), not two.
     constexpr double kLooks = 200;
     if (problem_.max_step == 0 && !equations_.contacts().empty()) {
       problem_.max_step = (end() - simulation_.times.front()) / kLooks;
