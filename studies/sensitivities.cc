@@ -18,7 +18,6 @@
 #include "vmech/dynamics/loads/track_motion.h"
 #include "vmech/dynamics/sensitivity/load_derivatives.h"
 #include "vmech/dynamics/sensitivity/load_gradient.h"
-#include "vmech/dynamics/sensitivity/motion_part.h"
 #include "vmech/studies/figure_values.h"
 
 namespace vmech {

@@ -4,20 +4,37 @@
 
 namespace vmech {
 
+namespace {
+
+/// What a study stores of one pose [bytes].
+size_t BytesOfPose(const LoadArrays::Shape& shape) {
+  constexpr size_t kOfPose = 6, kOfJoint = 6, kOfFreedom = 3;
+  const size_t freedoms = std::reduce(shape.freedoms.begin(), shape.freedoms.end(), size_t{0});
+  return (sizeof(double) + sizeof(MotionSample)) * shape.drives +
+         sizeof(double) * (kOfPose + kOfJoint * shape.freedoms.size() + kOfFreedom * freedoms) +
+         sizeof(LinkMotion) * shape.links;
+}
+
+}  // namespace
+
 LoadArrays::LoadArrays(const Shape& shape)
     : drive_count(shape.drives),
       link_count(shape.links),
+      memory(shape.poses * BytesOfPose(shape)),
       first_freedom(shape.freedoms.size() + 1, 0),
-      times(shape.poses, 0.0),
-      drives(shape.poses * shape.drives),
-      drive_forces(shape.poses * shape.drives),
-      wrenches(shape.poses * shape.freedoms.size() * 6),
-      powers(shape.poses),
-      power_errors(shape.poses),
-      power_error_scales(shape.poses),
-      smallest_pivots(shape.poses),
-      closures(shape.poses),
-      links(shape.poses * shape.links),
+      times(shape.poses, memory.resource()),
+      drives(shape.poses * shape.drives, memory.resource()),
+      drive_forces(shape.poses * shape.drives, memory.resource()),
+      wrenches(shape.poses * shape.freedoms.size() * 6, memory.resource()),
+      positions(memory.resource()),
+      rates(memory.resource()),
+      accelerations(memory.resource()),
+      powers(shape.poses, memory.resource()),
+      power_errors(shape.poses, memory.resource()),
+      power_error_scales(shape.poses, memory.resource()),
+      smallest_pivots(shape.poses, memory.resource()),
+      closures(shape.poses, memory.resource()),
+      links(shape.poses * shape.links, memory.resource()),
       hands(shape.has_hand ? shape.poses : 0),
       states(shape.has_pose_state ? shape.poses : 0) {
   std::partial_sum(shape.freedoms.begin(), shape.freedoms.end(), first_freedom.begin() + 1);

@@ -2,9 +2,11 @@
 
 #include <iterator>
 #include <memory>
+#include <memory_resource>
 #include <span>
 #include <vector>
 
+#include "vmech/base/array_memory.h"
 #include "vmech/base/pose.h"
 #include "vmech/kinematics/motion/motion_law.h"
 #include "vmech/mechanisms/mechanism.h"
@@ -54,9 +56,10 @@ struct PoseState {
   bool held_by_friction = false;
 };
 
-/// Like std::allocator, but numbers start undefined: they are written once, when they are known.
+/// From a memory resource, but numbers start undefined: they are written once, when they are known.
 template <typename T>
-struct UndefinedStart : std::allocator<T> {
+struct UndefinedStart : std::pmr::polymorphic_allocator<T> {
+  using std::pmr::polymorphic_allocator<T>::polymorphic_allocator;
   /// The same allocator for another type, as the standard asks for.
   template <typename U>
   struct rebind {
@@ -70,6 +73,8 @@ struct UndefinedStart : std::allocator<T> {
   void construct(U* number, const Value& value) {
     *number = value;
   }
+  /// A copy's memory is its own, from the heap.
+  UndefinedStart select_on_container_copy_construction() const { return {}; }
 };
 
 /// The loads at every pose of a study, one array for each quantity with the pose as its first
@@ -112,9 +117,10 @@ struct LoadArrays {
     return {drives[at], drive_forces[at]};
   }
 
+  ArrayMemory memory;                     ///< where the numbers lie
   std::vector<int> first_freedom{0};      ///< [joints + 1] where a joint's freedoms begin
-  std::vector<double> times;              ///< [poses] [s]
-  std::vector<MotionSample> drives;       ///< [poses, drives] what is prescribed
+  std::pmr::vector<double> times;         ///< [poses] [s]
+  std::pmr::vector<MotionSample> drives;  ///< [poses, drives] what is prescribed
   Array drive_forces;                     ///< [poses, drives] [N], [N m]
   Array wrenches;                         ///< [poses, joints, fx fy fz mx my mz], as JointSample
   Array positions, rates, accelerations;  ///< [poses, freedoms], as JointSample
@@ -127,9 +133,9 @@ struct LoadArrays {
   /// 0 at a dead centre (DependentSolver::smallest_pivot).
   Array smallest_pivots;
   Array closures;  ///< [poses] loop error that is left, dimensionless as LargestLoopError
-  std::vector<LinkMotion>
-      links;                    ///< [poses, links], empty if LoadStudyOptions::link_motions is off
-  std::vector<HandLoad> hands;  ///< [poses], empty unless a hand drives
+  /// [poses, links], empty if LoadStudyOptions::link_motions is off.
+  std::pmr::vector<LinkMotion> links;
+  std::vector<HandLoad> hands;    ///< [poses], empty unless a hand drives
   std::vector<PoseState> states;  ///< [poses], empty where all would be PoseState()
 };
 

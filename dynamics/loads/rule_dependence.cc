@@ -43,23 +43,6 @@ LoadModel WithOtherChoices(const LoadModel& model, int choice) {
   return other;
 }
 
-/// Some poses of a motion.
-Motion PosesOf(const LoadModel& model, const Motion& motion, const std::vector<size_t>& poses) {
-  Motion some;
-  some.speed = motion.speed;
-  const auto copy = [](const auto& from, size_t pose, size_t each, auto* to) {
-    to->insert(to->end(), from.begin() + pose * each, from.begin() + (pose + 1) * each);
-  };
-  for (const size_t pose : poses) {
-    copy(motion.times, pose, 1, &some.times);
-    copy(motion.coordinates, pose, model.tree.nq, &some.coordinates);
-    copy(motion.drives, pose, model.drives.size(), &some.drives);
-    copy(motion.cut_positions, pose, model.tree.loops.size(), &some.cut_positions);
-    if (model.hand) copy(motion.hand, pose, 1, &some.hand);
-  }
-  return some;
-}
-
 /// The motion as the weights of the model's hand make it.
 Motion LedByHand(const LoadModel& model, Motion motion) {
   if (!model.hand) return motion;
@@ -153,7 +136,7 @@ RuleDependence FindRuleDependence(const PreparedStudy& prepared, const Motion& m
   RuleDependence result;
   result.joints.resize(model.tree.mechanism.joints.size());
   result.drives.resize(model.drives.size());
-  const Motion judged = PosesOf(model, motion, poses);
+  const Motion judged = PartOf(motion, poses);
   const std::vector<Choice> others = OtherChoices(model, judged);
   Comparison<double> one(model, judged, others);
   Comparison<Lanes4> four(model, judged, others);

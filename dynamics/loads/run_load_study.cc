@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "vmech/base/array_memory.h"
 #include "vmech/base/lanes4.h"
 #include "vmech/dynamics/loads/friction_report.h"
 #include "vmech/dynamics/loads/load_peaks.h"
@@ -325,7 +326,8 @@ LoadStudyResult RunLoadStudy(const LoadStudy& study, const LoadStudyOptions& opt
 LoadStudyResult RunLoadStudy(const LoadStudy& study, const PreparedStudy& prepared,
                              const LoadStudyOptions& options) {
   options.Validate();
-  const Motion motion = TrackMotion(study, prepared, options.closure_tolerance);
+  const ArrayMemory memory(BytesOfMotion(study, prepared.model.tree));
+  const Motion motion = TrackMotion(study, prepared, options.closure_tolerance, memory.resource());
   RequireInsideTables(prepared.model, motion);
 
   LoadStudyResult result;

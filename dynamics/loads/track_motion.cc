@@ -21,12 +21,11 @@
 namespace vmech {
 namespace {
 
-constexpr double kTurn = 6.283185307179586;
-
 /// Moves the mechanism with its drives.
 class Tracker {
  public:
-  Tracker(const LoadStudy& study, const PreparedStudy& prepared, double tolerance)
+  Tracker(const LoadStudy& study, const PreparedStudy& prepared, double tolerance,
+          std::pmr::memory_resource* memory)
       : study_(study),
         model_(prepared.model),
         tree_(model_.tree),
@@ -42,7 +41,10 @@ class Tracker {
         q_trial_(q_),
         q_past_{q_, q_, q_},
         step_(VectorXd::Zero(tree_.nv)),
-        cut_positions_(tree_.loops.size(), Vector3d::Zero()) {
+        cut_positions_(StartCutPositions(tree_)),
+        motion_{std::pmr::vector<double>(memory), std::pmr::vector<double>(memory),
+                std::pmr::vector<MotionSample>(memory), std::pmr::vector<HandSample>(memory),
+                std::pmr::vector<Vector3d>(memory)} {
     for (const JointDrive& drive : study.drives) {
       const int q = CoordinateIndex(tree_, drive.joint, drive.freedom);
       coordinate_.push_back(q);
@@ -55,11 +57,12 @@ class Tracker {
     }
     EvaluatePose(tree_, q_, &ws_);
     idle_.Remember(ws_);
-    StartCutPositions();
+    ContinueCutPositions(tree_, ws_, &cut_positions_);
     motion_.times.reserve(study.times.size());
     motion_.drives.reserve(study.times.size() * study.drives.size());
     motion_.coordinates.reserve(study.times.size() * tree_.nq);
     motion_.cut_positions.reserve(study.times.size() * tree_.loops.size());
+    if (study.hand) motion_.hand.reserve(study.times.size());
   }
 
   /// From the assembled start to where the motion begins.
@@ -166,7 +169,7 @@ class Tracker {
     if (!(error <= tolerance_) || correction > kTrustedShare * size + kTrustedTurn) return false;
     Accept();
     position_ = target;
-    UnwrapCutPositions();
+    ContinueCutPositions(tree_, ws_, &cut_positions_);
     return true;
   }
 
@@ -224,7 +227,7 @@ class Tracker {
   void TakeLane(int lane, VectorXd* q) {
     for (int i = 0; i < tree_.nq; ++i) (*q)[i] = packet_q_[i][lane];
     for (size_t l = 0; l < tree_.loops.size(); ++l) {
-      UnwrapCutPosition(l, Lane(packet_cut_[l], lane));
+      ContinueCutPosition(tree_.loops[l].type, Lane(packet_cut_[l], lane), &cut_positions_[l]);
     }
     RecordPose(*q);
   }
@@ -277,7 +280,7 @@ class Tracker {
     EvaluatePose(tree_, q_, &ws_);
     if (!summary.converged()) ThrowCannotFollow(time, pose);
     SettleIdle();
-    UnwrapCutPositions();
+    ContinueCutPositions(tree_, ws_, &cut_positions_);
   }
 
   void SettleIdle() {
@@ -285,45 +288,7 @@ class Tracker {
     history_ = 0;  // idle freedoms do not go on as they were
     idle_.Settle(tolerance_, &dependents_, &ws_, &q_);
     idle_.Remember(ws_);
-    UnwrapCutPositions();
-  }
-
-  void StartCutPositions() {
-    for (size_t l = 0; l < tree_.loops.size(); ++l) {
-      const Joint& joint = tree_.mechanism.joints[tree_.loops[l].joint];
-      if (joint.type == JointType::kSpherical) continue;
-      for (size_t k = 0; k < joint.start.size(); ++k) cut_positions_[l][k] = joint.start[k];
-    }
-    UnwrapCutPositions();
-  }
-
-  void UnwrapCutPositions() {
-    for (size_t l = 0; l < tree_.loops.size(); ++l) {
-      UnwrapCutPosition(l, CutJointCoordinates(tree_.loops[l], ws_.loops[l]));
-    }
-  }
-
-  /// Angles of the cut joints continue from where they were.
-  void UnwrapCutPosition(size_t l, const Vector3d& now) {
-    for (int k = 0; k < 3; ++k) {
-      const bool is_angle = IsAngle(tree_.loops[l].type, k);
-      const double turns = is_angle ? std::round((cut_positions_[l][k] - now[k]) / kTurn) : 0;
-      cut_positions_[l][k] = now[k] + turns * kTurn;
-    }
-  }
-
-  static bool IsAngle(JointType type, int freedom) {
-    switch (type) {
-      case JointType::kRevolute:
-      case JointType::kUniversal:
-        return true;
-      case JointType::kCylindrical:
-        return freedom == 1;
-      case JointType::kPlanar:
-        return freedom == 2;
-      default:
-        return false;
-    }
+    ContinueCutPositions(tree_, ws_, &cut_positions_);
   }
 
   double LargestSpeed() const {
@@ -369,15 +334,23 @@ class Tracker {
   std::vector<double> position_;  ///< of each drive
   std::vector<double> target_;
   std::vector<Vector3d> cut_positions_;
-  int history_ = 0;  ///< how many of q_past_ lie one pose behind the other
   Motion motion_;
+  int history_ = 0;  ///< how many of q_past_ lie one pose behind the other
 };
 
 }  // namespace
 
-Motion TrackMotion(const LoadStudy& study, const PreparedStudy& prepared,
-                   double closure_tolerance) {
-  Tracker tracker(study, prepared, std::max(closure_tolerance, prepared.closure_tolerance));
+size_t BytesOfMotion(const LoadStudy& study, const KinematicTree& tree) {
+  const size_t of_pose = sizeof(double) * static_cast<size_t>(1 + tree.nq) +
+                         sizeof(MotionSample) * study.drives.size() +
+                         sizeof(HandSample) * (study.hand ? 1 : 0) +
+                         sizeof(Vector3d) * tree.loops.size();
+  return study.times.size() * of_pose;
+}
+
+Motion TrackMotion(const LoadStudy& study, const PreparedStudy& prepared, double closure_tolerance,
+                   std::pmr::memory_resource* memory) {
+  Tracker tracker(study, prepared, std::max(closure_tolerance, prepared.closure_tolerance), memory);
   tracker.Approach();
   const std::vector<double>& times = study.times;
   for (size_t i = 0; i < times.size();) {

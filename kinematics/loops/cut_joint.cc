@@ -2,13 +2,22 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
+
 #include "vmech/base/dual.h"
 #include "vmech/base/lanes4.h"
 #include "vmech/base/screw_algebra.h"
 #include "vmech/base/tape/taped4.h"
+#include "vmech/mechanisms/freedoms.h"
 
 namespace vmech {
 namespace {
+
+/// Is a freedom of a cut joint an angle of which only the part within a turn is seen?
+bool CountsTurns(JointType type, int freedom) {
+  if (type == JointType::kSpherical || type == JointType::kScrew) return false;
+  return freedom < FreedomsOf(type) && FreedomsOfType(type).rotates[freedom];
+}
 
 /// Of numbers with slopes.
 template <typename T>
@@ -127,6 +136,32 @@ Vector3<T> CutJointAccelerations(const KinematicTree& tree, const TreeWorkspace<
   ScrewT<T> A_rel = B.A - A.A - CarriedTwist(A.V, V_rel);
   A_rel.linear += Cross(V_rel.angular, VelocityAt(s.F.p, V_rel));  // since M moves on in F
   return AlongFreedoms<T>(tree.loops[loop], s, TwistInJoint<T>(s, A_rel));
+}
+
+std::vector<Vector3d> StartCutPositions(const KinematicTree& tree) {
+  std::vector<Vector3d> positions(tree.loops.size(), Vector3d::Zero());
+  for (size_t l = 0; l < positions.size(); ++l) {
+    const Joint& joint = tree.mechanism.joints[tree.loops[l].joint];
+    if (joint.type == JointType::kSpherical) continue;
+    std::copy(joint.start.begin(), joint.start.end(), positions[l].data());
+  }
+  return positions;
+}
+
+void ContinueCutPosition(JointType type, const Vector3d& now, Vector3d* position) {
+  constexpr double kTurn = 2 * std::numbers::pi;
+  for (int k = 0; k < 3; ++k) {
+    const double turns = CountsTurns(type, k) ? std::round(((*position)[k] - now[k]) / kTurn) : 0;
+    (*position)[k] = now[k] + turns * kTurn;
+  }
+}
+
+void ContinueCutPositions(const KinematicTree& tree, const TreeWorkspace<double>& ws,
+                          std::vector<Vector3d>* positions) {
+  for (size_t l = 0; l < tree.loops.size(); ++l) {
+    const Loop& loop = tree.loops[l];
+    ContinueCutPosition(loop.type, CutJointCoordinates(loop, ws.loops[l]), &(*positions)[l]);
+  }
 }
 
 // NOLINTBEGIN(bugprone-macro-parentheses): T is a type

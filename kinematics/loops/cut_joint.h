@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "vmech/kinematics/tree/tree_workspace.h"
 
@@ -39,6 +40,17 @@ Vector3<T> CutJointRates(const KinematicTree& tree, const TreeWorkspace<T>& ws, 
 /// V_FM. Needs V and A.
 template <typename T>
 Vector3<T> CutJointAccelerations(const KinematicTree& tree, const TreeWorkspace<T>& ws, int loop);
+
+/// Coordinates of the cut joints as the mechanism states its start [loops].
+std::vector<Vector3d> StartCutPositions(const KinematicTree& tree);
+
+/// Goes on from `position`, the coordinates of a cut joint a moment ago, to those `now`: of an
+/// angle only the part within a turn is seen, and the turns are those that make the step short.
+void ContinueCutPosition(JointType type, const Vector3d& now, Vector3d* position);
+
+/// The same for the cut joints of all loops [loops], at the pose that `ws` is of.
+void ContinueCutPositions(const KinematicTree& tree, const TreeWorkspace<double>& ws,
+                          std::vector<Vector3d>* positions);
 
 /// The angle by which M is turned about z of F, within +-pi.
 template <typename T>

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <numeric>
+#include <utility>
 
 #include "driven_examples.h"
 #include "vmech/dynamics/loads/run_load_study.h"
@@ -23,6 +25,28 @@ TEST(LoadArrays, HaveARowForEachPose) {
   EXPECT_EQ(loads.links.size(), 2u * 2);
   EXPECT_TRUE(loads.hands.empty());
   EXPECT_TRUE(loads.states.empty());
+}
+
+TEST(LoadArrays, LieInOnePieceAndMoveWithIt) {
+  constexpr size_t kPoses = 1 << 16;
+  LoadArrays made({.poses = kPoses, .drives = 1, .freedoms = {1, 2}, .links = 3});
+  made.powers.back() = 7;
+  const auto begin = [](const auto& array) { return reinterpret_cast<const char*>(array.data()); };
+  const auto bytes = [](const auto&... arrays) {
+    return (0 + ... + (arrays.size() * sizeof(arrays[0])));
+  };
+  const LoadArrays& a = made;
+  const size_t all =
+      bytes(a.times, a.drives, a.drive_forces, a.wrenches, a.positions, a.rates, a.accelerations,
+            a.powers, a.power_errors, a.power_error_scales, a.smallest_pivots, a.closures, a.links);
+  for (const char* array :
+       {begin(a.drives), begin(a.wrenches), begin(a.closures), begin(a.links)}) {
+    EXPECT_LT(static_cast<size_t>(std::abs(array - begin(a.times))), all);
+  }
+  const double* const powers = a.powers.data();
+  const LoadArrays moved(std::move(made));
+  EXPECT_EQ(moved.powers.data(), powers);
+  EXPECT_EQ(moved.powers.back(), 7);
 }
 
 TEST(LoadArrays, AJointIsItsPartOfEveryArray) {

@@ -47,7 +47,7 @@ TEST(PacketOfPoses, IsEachPoseOfItsOwn) {
     LoadWorkspace<Lanes4> packet_ws(prepared.model);
     ASSERT_TRUE(EvaluatePoseLoads(prepared.model, motion, 4, &packet_ws));
     const auto loads = std::make_shared<LoadArrays>(MakeLoadArrays(prepared.model, motion, true));
-    const auto single = std::make_shared<LoadArrays>(*loads);
+    const auto single = std::make_shared<LoadArrays>(MakeLoadArrays(prepared.model, motion, true));
     StorePoseLoads(prepared.model, motion, 4, packet_ws, loads.get());
     for (int lane = 0; lane < Lanes4::kLanes; ++lane) {
       ASSERT_TRUE(EvaluatePoseLoads(prepared.model, motion, 4 + lane, &ws));

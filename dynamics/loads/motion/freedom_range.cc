@@ -93,7 +93,7 @@ int CountTurns(const Track& track) {
 }
 
 bool DriveIsUniform(const LoadStudyResult& result) {
-  const std::vector<MotionSample>& drives = result.poses.arrays().drives;
+  const auto& drives = result.poses.arrays().drives;
   const double speed = drives.front().velocity;
   return std::all_of(drives.begin(), drives.end(), [speed](const MotionSample& drive) {
     return std::abs(drive.velocity - speed) <= kRounding * std::abs(speed);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <memory_resource>
 #include <vector>
 
 #include "vmech/base/dual.h"
@@ -12,11 +13,11 @@ namespace vmech {
 
 /// A study's motion, pose by pose.
 struct Motion {
-  std::vector<double> times;            ///< [poses] [s]
-  std::vector<double> coordinates;      ///< [poses * nq] of closed poses
-  std::vector<MotionSample> drives;     ///< [poses * drives]
-  std::vector<HandSample> hand;         ///< [poses] if a hand drives
-  std::vector<Vector3d> cut_positions;  ///< [poses * loops] of the cut joints, unwrapped
+  std::pmr::vector<double> times;            ///< [poses] [s]
+  std::pmr::vector<double> coordinates;      ///< [poses * nq] of closed poses
+  std::pmr::vector<MotionSample> drives;     ///< [poses * drives]
+  std::pmr::vector<HandSample> hand;         ///< [poses] if a hand drives
+  std::pmr::vector<Vector3d> cut_positions;  ///< [poses * loops] of the cut joints, unwrapped
   /// The largest speed of any drive or of the hand [rad/s], lengths divided by the characteristic
   /// length: what rounding of velocities is measured by.
   double speed = 0;
@@ -28,6 +29,9 @@ struct Motion {
     return {coordinates.data() + pose * nq, static_cast<Eigen::Index>(nq)};
   }
 };
+
+/// The motion at some of its poses.
+Motion PartOf(const Motion& motion, const std::vector<size_t>& poses);
 
 /// How what a study prescribes goes with a parameter: the slopes of its motion, and its external
 /// loads with theirs.

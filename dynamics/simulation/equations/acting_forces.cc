@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "vmech/base/screw_algebra.h"
 #include "vmech/dynamics/loads/pose/external_loads.h"
@@ -19,12 +18,6 @@ namespace {
 
 HandSample HandAt(const GraspSpring& spring, double time) {
   return spring.hand ? spring.hand(time) : spring.law.At(time);
-}
-
-/// Is a freedom of a cut joint an angle of which only the part within a turn is seen?
-bool CountsTurns(JointType type, int freedom) {
-  if (type == JointType::kSpherical || type == JointType::kScrew) return false;
-  return freedom < FreedomsOf(type) && FreedomsOfType(type).rotates[freedom];
 }
 
 MovingFrame MovingFrameOf(const HandSample& hand) {
@@ -47,35 +40,17 @@ bool Counts(const Simulation& simulation, const Joint& joint, FreedomId at) {
 
 }  // namespace
 
-void ContinueCutPositions(const KinematicTree& tree, const TreeWorkspace<double>& ws,
-                          std::vector<Vector3d>* positions) {
-  constexpr double kTurn = 2 * std::numbers::pi;
-  for (size_t l = 0; l < tree.loops.size(); ++l) {
-    const Vector3d now = CutJointCoordinates(tree.loops[l], ws.loops[l]);
-    Vector3d& position = (*positions)[l];
-    for (int k = 0; k < 3; ++k) {
-      const bool turns = CountsTurns(tree.loops[l].type, k);
-      position[k] = now[k] + (turns ? kTurn * std::round((position[k] - now[k]) / kTurn) : 0);
-    }
-  }
-}
-
 ActingForces::ActingForces(const Simulation& simulation, LoadModel* model)
     : simulation_(simulation),
       model_(*model),
       exerted_(model->tree.mechanism.joints.size(), Vector3d::Zero()),
       motor_forces_(simulation.motors.size(), 0.0),
-      cut_positions_(model->tree.loops.size(), Vector3d::Zero()) {
+      cut_positions_(StartCutPositions(model->tree)) {
   if (simulation.hand) {
     const Grasp& grasp = simulation.mechanism.grasps[simulation.hand->grasp];
     coupling_.emplace_back(simulation.hand->coupling, grasp.kind, 0.0);
   }
   ListJoints();
-  for (size_t l = 0; l < cut_positions_.size(); ++l) {
-    const Joint& joint = model->tree.mechanism.joints[model->tree.loops[l].joint];
-    if (joint.type == JointType::kSpherical) continue;
-    std::copy(joint.start.begin(), joint.start.end(), cut_positions_[l].data());
-  }
 }
 
 void ActingForces::ListJoints() {
@@ -257,7 +232,7 @@ Motion ActingForces::PoseOf(double time, const ConstrainedMotion& motion) const 
   pose.times = {time};
   pose.coordinates.assign(ws.q.data(), ws.q.data() + ws.q.size());
   for (const int v : model_.partition.driven) pose.drives.push_back({0, ws.v[v], ws.vdot[v]});
-  pose.cut_positions = cut_positions_;
+  pose.cut_positions.assign(cut_positions_.begin(), cut_positions_.end());
   return pose;
 }
 

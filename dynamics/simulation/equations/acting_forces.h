@@ -88,8 +88,4 @@ class ActingForces {
   Motion none_;                          ///< that of constant loads
 };
 
-/// The coordinates of cut joints, angles continued from those in `positions` [loops].
-void ContinueCutPositions(const KinematicTree& tree, const TreeWorkspace<double>& ws,
-                          std::vector<Vector3d>* positions);
-
 }  // namespace vmech

@@ -1,13 +1,14 @@
-#include "vmech/dynamics/sensitivity/motion_part.h"
+#include "vmech/dynamics/loads/pose/study_motion.h"
 
 namespace vmech {
 namespace {
 
 /// Of an array [all, ..] the rows `poses`.
 template <typename T>
-std::vector<T> RowsOf(const std::vector<T>& array, size_t all, const std::vector<size_t>& poses) {
+std::pmr::vector<T> RowsOf(const std::pmr::vector<T>& array, size_t all,
+                           const std::vector<size_t>& poses) {
   const size_t width = array.size() / all;
-  std::vector<T> rows;
+  std::pmr::vector<T> rows;
   rows.reserve(width * poses.size());
   for (const size_t pose : poses) {
     const auto first = array.begin() + static_cast<ptrdiff_t>(width * pose);
