@@ -18,9 +18,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-template <typename Number>
-std::string Base64Of(const std::vector<Number>& numbers) {
-  return Base64({reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(Number)});
+template <typename Numbers>
+std::string Base64Of(const Numbers& numbers) {
+  return Base64(
+      {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(numbers[0])});
 }
 
 Json ArrayOf(const Vector3d& v) {
