@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <numeric>
@@ -325,7 +326,9 @@ LoadStudyResult RunLoadStudy(const LoadStudy& study, const LoadStudyOptions& opt
 LoadStudyResult RunLoadStudy(const LoadStudy& study, const PreparedStudy& prepared,
                              const LoadStudyOptions& options) {
   options.Validate();
-  const Motion motion = TrackMotion(study, prepared, options.closure_tolerance);
+  std::function<bool()> goes_on;
+  if (options.progress) goes_on = [&] { return options.progress(0); };
+  const Motion motion = TrackMotion(study, prepared, options.closure_tolerance, goes_on);
   RequireInsideTables(prepared.model, motion);
 
   LoadStudyResult result;
