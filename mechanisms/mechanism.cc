@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "vmech/mechanisms/direction.h"
 #include "vmech/mechanisms/freedoms.h"
 
 namespace vmech {
@@ -45,10 +46,11 @@ Matrix3d AxesFromZX(const Vector3d& z, const Vector3d& x) {
   constexpr double kParallel =
       1e-6;                         // sine of the angle below which x says nothing about the frame
   constexpr double kExact = 4e-15;  // defect of axes that cannot be made more square
-  if (!(z.norm() > 0)) throw std::invalid_argument("the z axis has no length");
-  const Vector3d z_unit = z.normalized();
-  const Vector3d x_across = x - z_unit * z_unit.dot(x);
-  if (!(x_across.norm() > kParallel * x.norm())) {
+  const Vector3d z_near = NearUnitLength(z), x_near = NearUnitLength(x);
+  if (!(z_near.norm() > 0)) throw std::invalid_argument("the z axis has no length");
+  const Vector3d z_unit = z_near.normalized();
+  const Vector3d x_across = x_near - z_unit * z_unit.dot(x_near);
+  if (!(x_across.norm() > kParallel * x_near.norm())) {
     throw std::invalid_argument("the x axis is parallel to the z axis, or has no length");
   }
   const bool orthonormal = std::abs(z.squaredNorm() - 1) < kExact &&

@@ -172,8 +172,8 @@ void RequireNonNegative(std::string_view field, double value) {
 void RequireIndex(std::string_view field, int index, size_t count) {
   if (index >= 0 && static_cast<size_t>(index) < count) return;
   Refuse(field,
-         fmt::format(" = {}, but there {}; indices begin at 0, and FindLink, FindJoint and "
-                     "FindGrasp give -1 for a name that is not there",
+         fmt::format(" = {}, but there {}; indices begin at 0, and -1 stands for a name "
+                     "that is not there",
                      index, count == 1 ? std::string("is 1") : fmt::format("are {}", count)));
 }
 

@@ -60,7 +60,7 @@ class TableParser {
   void ParseNames(std::string_view line, const std::vector<std::string_view>& fields) {
     table_.names_line = line_;
     for (const std::string_view field : fields) {
-      if (field.empty() || field.find(';') != field.npos) {
+      if (field.empty() || field.find_first_of(";\t") != field.npos) {
         Error(line, field, "expected names of columns, kept apart by commas");
       } else if (ParseNumber(field)) {
         Error(line, field, "the first line must name the columns, not give numbers");

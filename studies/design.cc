@@ -5,22 +5,57 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <set>
 #include <stdexcept>
+#include <string>
 #include <utility>
+
+#include "vmech/dynamics/loads/run_load_study.h"
+#include "vmech/mechanisms/joint_type.h"
 
 namespace vmech {
 namespace {
 
+/// The coordinates of a joint in the first pose; of a spherical one the unit quaternion w, x, y, z.
+std::vector<double> FirstCoordinates(const Joint& joint, const LoadStudyResult& loads, size_t j) {
+  const Vector3d position = loads.poses[0].joints[j].position;
+  if (joint.type != JointType::kSpherical) {
+    return {position.begin(), position.begin() + FreedomsOf(joint.type)};
+  }
+  const double angle = position.norm();
+  const Vector3d axis = angle > 0 ? Vector3d(position / angle) : Vector3d::UnitX();
+  const Eigen::Quaterniond q(Eigen::AngleAxisd(angle, axis));
+  return {q.w(), q.x(), q.y(), q.z()};
+}
+
 /// Every joint starts where the study's first pose has it, so that other designs are assembled on
 /// the same branch.
-void StartAtFirstPose(const StudyOutcome& outcome, StudyFile* file) {
+void StartAtFirstPose(const LoadStudyResult& loads, StudyFile* file) {
   std::vector<Joint>& joints = file->study.mechanism.joints;
   for (size_t j = 0; j < joints.size(); ++j) {
-    if (joints[j].type == JointType::kSpherical) continue;
-    const Vector3d position = outcome.loads.poses[0].joints[j].position;
-    for (size_t k = 0; k < joints[j].start.size(); ++k) {
-      joints[j].start[k] = position[static_cast<int>(k)];
-    }
+    joints[j].start = FirstCoordinates(joints[j], loads, j);
+  }
+}
+
+/// May a file of the joint state this start? A motion may leave limits, a file may not.
+bool IsWithinLimits(const Joint& joint, const std::vector<double>& start) {
+  for (size_t k = 0; k < joint.lower.size(); ++k) {
+    if (start[k] < joint.lower[k] || start[k] > joint.upper[k]) return false;
+  }
+  return true;
+}
+
+/// The mechanism of a design as a file of it is written: it starts in the design's own first pose,
+/// from which whatever reads the file assembles the same branch.
+void StateFirstPose(const StudyFile& original, StudyFile* design) {
+  const LoadStudyResult loads = RunLoadStudy(design->study, {});
+  std::vector<Joint>& joints = design->study.mechanism.joints;
+  for (size_t j = 0; j < joints.size(); ++j) {
+    const Joint& before = original.study.mechanism.joints[j];
+    const std::vector<double> start = FirstCoordinates(joints[j], loads, j);
+    const bool stated = IsWithinLimits(joints[j], start);
+    joints[j].start = stated ? start : before.start;
+    joints[j].start_given = stated || before.start_given;
   }
 }
 
@@ -61,7 +96,7 @@ class DesignProgram final : public NonlinearProgram {
   StudyFile At(const VectorXd& x) const {
     StudyFile varied = file_;
     PutAll(parameters_, {x.data(), parameters_.size()}, &varied);
-    StartAtFirstPose(outcome_, &varied);
+    StartAtFirstPose(outcome_.loads, &varied);
     return varied;
   }
 
@@ -193,13 +228,26 @@ class DesignProgram final : public NonlinearProgram {
   std::exception_ptr error_;
 };
 
+void RequireBounds(const DesignVariable& v) {
+  constexpr double kFar = 1e6;  // sizes; slopes and steps of a search are parts of the range
+  const StudyParameter& p = v.parameter;
+  const bool around = v.lower < v.upper && v.lower <= p.value && p.value <= v.upper;
+  if (around && v.upper - v.lower <= kFar * p.scale) return;
+  throw std::invalid_argument(
+      fmt::format("'{0}' is to vary from {1:.6g} to {2:.6g} {3}, but is {4:.6g} {3}: give {5}",
+                  p.name, v.lower, v.upper, p.unit, p.value,
+                  around ? "bounds that are not a million times as wide" : "bounds around it"));
+}
+
 void RequireInBounds(const DesignTask& task) {
   if (task.variables.empty()) throw std::invalid_argument("a design needs a parameter to vary");
+  std::set<std::string> names;
   for (const DesignVariable& v : task.variables) {
-    if (v.lower < v.upper && v.lower <= v.parameter.value && v.parameter.value <= v.upper) continue;
-    throw std::invalid_argument(fmt::format(
-        "'{0}' is to vary from {1:.6g} to {2:.6g} {3}, but is {4:.6g} {3}: give bounds around it",
-        v.parameter.name, v.lower, v.upper, v.parameter.unit, v.parameter.value));
+    if (!names.insert(v.parameter.name).second) {
+      throw std::invalid_argument(
+          fmt::format("'{}' is to vary twice: give it one pair of bounds", v.parameter.name));
+    }
+    RequireBounds(v);
   }
 }
 
@@ -268,10 +316,7 @@ DesignResult OptimiseDesign(const StudyFile& file, const StudyOutcome& outcome,
   result.values.assign(best.x.begin(), best.x.end());
   result.after = ValuesAt(program, task, best.x);
   result.best = program.At(best.x);
-  std::vector<Joint>& joints = result.best.study.mechanism.joints;
-  for (size_t j = 0; j < joints.size(); ++j) {
-    joints[j].start = file.study.mechanism.joints[j].start;
-  }
+  StateFirstPose(file, &result.best);
   result.feasible = best.feasible;
   result.optimality = best.optimality;
   // A multiplier is by how much the objective of the search falls. Its own slope is nothing where a

@@ -60,7 +60,9 @@ struct DesignRun {
 
 /// What came of the search for a design.
 struct DesignResult {
-  StudyFile best;              ///< the study with the best design
+  /// The study with the best design; its joints start in its own first pose, but for those whose
+  /// limits the motion leaves.
+  StudyFile best;
   std::vector<double> values;  ///< [variables]
   bool feasible = false;       ///< it keeps what it must
   /// The objective, then the constraints' figures: as it was and as it is.

@@ -214,16 +214,15 @@ std::vector<Taped> FigureValues::CourseOf(const Figure& figure) {
 /// How long each pose stands for, as DutyCycle::duration.
 std::vector<Taped> FigureValues::Durations() {
   const size_t poses = masses_;
-  if (file_.study.cycle > 0) {
-    return std::vector<Taped>(poses, Use(cycle_) / static_cast<double>(poses));
-  }
-  if (poses == 1) return {Taped(1)};
+  const bool repeats = file_.study.cycle > 0;
+  if (poses == 1) return {repeats ? Use(cycle_) : Taped(1)};
   std::vector<Taped> times, durations(poses);
   for (size_t i = 0; i < poses; ++i) times.push_back(Use(i));
-  for (size_t i = 1; i < poses; ++i) {
+  if (repeats) times.push_back(times[0] + Use(cycle_));
+  for (size_t i = 1; i < times.size(); ++i) {
     const Taped half = 0.5 * (times[i] - times[i - 1]);
     durations[i - 1] += half;
-    durations[i] += half;
+    durations[i % poses] += half;
   }
   return durations;
 }

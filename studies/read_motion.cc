@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "vmech/mechanisms/freedoms.h"
+#include "vmech/studies/repeated_rows.h"
 #include "vmech/studies/sha256.h"
 
 namespace vmech {
@@ -110,9 +111,16 @@ bool SameFigure(double a, double b) {
   return std::abs(a - b) <= kFigures * std::max({1e-3, std::abs(a), std::abs(b)});
 }
 
-/// A drive from a table with the columns t, value.
+/// Is a table the same again after each cycle of the study?
+bool FillsCycle(const std::vector<double>& times, bool closed, double cycle) {
+  return closed && cycle > 0 && SameFigure(times.back() - times.front(), cycle);
+}
+
+/// A drive from a table with the columns t, value. `cycle` is that of the study, if a drive before
+/// this one has set it, else 0.
 void ReadTableDrive(const Node& node, double unit, const Units& units,
-                    const std::filesystem::path& folder, JointDrive* drive, PoseTimes* poses) {
+                    const std::filesystem::path& folder, double cycle, JointDrive* drive,
+                    PoseTimes* poses) {
   for (const char* key : {"turns", "duration"}) {
     if (const Node extra = node[key]) extra.KeyError("not used with a table, which has its times");
   }
@@ -126,7 +134,11 @@ void ReadTableDrive(const Node& node, double unit, const Units& units,
     ReportInTable(node["table"], table, -1, defect.what());
     return;
   }
-  *poses = ReadTableRun(node, times, SameFigure(values.front(), values.back()));
+  const bool closed = SameFigure(values.front(), values.back());
+  *poses = ReadTableRun(node, times, closed);
+  if (!FillsCycle(times, closed, cycle > 0 ? cycle : poses->cycle)) return;
+  const TimedRows<double> table_of_cycles = WithCyclesAround<double>({times, values});
+  drive->law = MotionLaw::Table(table_of_cycles.times, table_of_cycles.rows);
 }
 
 /// One motor. `leads` is true for the first, which sets the poses.
@@ -147,7 +159,7 @@ void ReadJointDrive(const Node& node, const Units& units, const std::filesystem:
   PoseTimes poses;
   if (node["table"]) {
     const double unit = rotates ? units.angle : units.length;
-    ReadTableDrive(node, unit, units, folder, &drive, &poses);
+    ReadTableDrive(node, unit, units, folder, study->cycle, &drive, &poses);
   } else {
     if (const Node extra = node["repeats"]) extra.KeyError("used with a table only");
     const double speed = ReadSpeed(node, rotates, units);
@@ -205,6 +217,10 @@ void ReadHandDrive(const Node& node, const Units& units, const std::filesystem::
   PoseTimes run = ReadTableRun(node, table->times, table->closed);
   study->times = std::move(run.times);
   study->cycle = run.cycle;
+  if (FillsCycle(table->times, table->closed, run.cycle)) {
+    const TimedRows<Posed> cycles = WithCyclesAround<Posed>({table->times, table->poses});
+    hand.law = HandLaw::Table(cycles.times, cycles.rows);
+  }
   study->hand = std::move(hand);
 }
 
@@ -291,6 +307,7 @@ std::optional<HandTable> ReadHandTable(const Node& node, const Units& units,
   std::vector<Posed> poses;
   for (size_t i = 0; i < table.rows(); ++i) poses.push_back(HandPose(node, table, units, i));
   HandTable hand;
+  hand.poses = poses;
   hand.times = Scaled(*table.Find("t"), units.time);
   try {
     hand.law = HandLaw::Table(hand.times, poses);

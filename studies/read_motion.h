@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "vmech/base/pose.h"
 #include "vmech/dynamics/loads/load_study.h"
 #include "vmech/mechanisms/files/document.h"
 #include "vmech/mechanisms/files/units.h"
@@ -62,6 +63,7 @@ void ReadFollowingDrive(const Node& node, const Units& units, const std::filesys
 struct HandTable {
   HandLaw law;                ///< poses over time
   std::vector<double> times;  ///< [s]
+  std::vector<Posed> poses;   ///< one for each time
   bool closed = false;        ///< it ends where it began
 };
 /// Nothing if the table cannot be used, which is reported.

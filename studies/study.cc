@@ -26,12 +26,7 @@ DutyCycle CycleOfJoint(const LoadStudy& study, const LoadStudyResult& loads, int
     cycle.speed.push_back(pose.joints[joint].rate[freedom]);
     cycle.wrench.push_back(pose.joints[joint]);
   }
-  if (study.cycle > 0) {
-    // Poses share a cycle evenly; it has no first and last.
-    cycle.duration.assign(times.size(), study.cycle / static_cast<double>(times.size()));
-  } else {
-    cycle.duration = DurationsFromTimes(times);
-  }
+  cycle.duration = DurationsFromTimes(times, study.cycle);
   return cycle;
 }
 

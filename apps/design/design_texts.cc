@@ -66,10 +66,14 @@ std::string Verdict(const DesignResult& result) {
   if (!result.feasible) {
     return "No design was found that keeps what it must; this one comes closest.";
   }
+  constexpr double kMuch = 0.01;  // of the objective
   return fmt::format(
       "{} designs were looked at. What is left to gain is, by the slope at the best one, {:.1e} of "
-      "the objective over the range of a parameter.",
-      result.evaluations, result.optimality);
+      "the objective over the range of a parameter.{}",
+      result.evaluations, result.optimality,
+      result.optimality > kMuch ? " The search may have ended short of it: go on from this design, "
+                                  "with other bounds, --starts or another --method."
+                                : "");
 }
 
 std::string Cell(double value) {

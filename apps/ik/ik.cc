@@ -193,7 +193,8 @@ Posed ReadTarget(const std::string& text, const Units& units, const Posed& X_WG_
     X_WH.R = Eigen::AngleAxisd(turn.norm(), axis).toRotationMatrix();
   } else if (n.size() == 7) {
     const Eigen::Quaterniond quaternion(n[3], n[4], n[5], n[6]);
-    if (!(quaternion.norm() > 0)) {
+    constexpr double kNothing = 1e-100;  // whose square may vanish
+    if (!(quaternion.norm() > kNothing)) {
       throw OptionError("--target: the quaternion is zero; (1, 0, 0, 0) is no rotation");
     }
     X_WH.R = quaternion.normalized().toRotationMatrix();

@@ -63,13 +63,19 @@ std::vector<ShapeRow> ShapesOf(const Modes& modes) {
   return rows;
 }
 
+/// Coordinates of the equilibrium; what is no more than rounding beside a radian, or beside the
+/// mechanism's length, is zero.
 std::string PoseLines(const Mechanism& mechanism) {
+  constexpr double kNothing = 1e-14;
+  const double length = CharacteristicLength(mechanism);
   std::string text;
   for (const Joint& joint : mechanism.joints) {
     if (joint.type == JointType::kSpherical) continue;
     for (int k = 0; k < FreedomsOf(joint.type); ++k) {
+      const double size = FreedomsOfType(joint.type).rotates[k] ? 1 : length;
+      const double q = std::abs(joint.start[k]) > kNothing * size ? joint.start[k] : 0;
       text += fmt::format("  {:<24} {}\n", NameOfFreedom(joint, k),
-                          FormatCoordinate(mechanism.units, joint, k, joint.start[k]));
+                          FormatCoordinate(mechanism.units, joint, k, q));
     }
   }
   return text;

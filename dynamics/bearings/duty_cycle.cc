@@ -53,10 +53,11 @@ void DutyCycle::Validate() const {
   if (!(total > 0)) throw std::invalid_argument("duty cycle: all durations are zero");
 }
 
-std::vector<double> DurationsFromTimes(std::span<const double> times) {
-  if (times.size() == 1) return {1.0};
-  std::vector<double> duration(times.size(), 0.0);
-  for (size_t i = 1; i < times.size(); ++i) {
+std::vector<double> DurationsFromTimes(std::span<const double> times, double cycle) {
+  const size_t poses = times.size();
+  if (poses == 1) return {cycle > 0 ? cycle : 1.0};
+  std::vector<double> duration(poses, 0.0);
+  for (size_t i = 1; i < poses; ++i) {
     const double step = times[i] - times[i - 1];
     if (!(step > 0)) {
       throw std::invalid_argument(fmt::format("times must ascend, but {} s follows {} s (pose {})",
@@ -64,6 +65,11 @@ std::vector<double> DurationsFromTimes(std::span<const double> times) {
     }
     duration[i - 1] += step / 2;
     duration[i] += step / 2;
+  }
+  if (cycle > 0 && poses > 0) {
+    const double step = std::max(0.0, cycle - (times.back() - times.front()));
+    duration.front() += step / 2;
+    duration.back() += step / 2;
   }
   return duration;
 }

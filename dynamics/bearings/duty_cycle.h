@@ -22,9 +22,10 @@ struct DutyCycle {
 };
 
 /// Durations for poses at ascending times: half of each neighbouring interval (trapezoidal rule).
-/// A single pose stands for one second.
+/// A single pose stands for one second. Poses that repeat after `cycle` [s] stand for all of it:
+/// the first one follows the last. 0: they do not repeat.
 /// @throws std::invalid_argument if the times do not ascend.
-std::vector<double> DurationsFromTimes(std::span<const double> times);
+std::vector<double> DurationsFromTimes(std::span<const double> times, double cycle = 0);
 
 /// How a bearing turns over a cycle.
 enum class Rotation {

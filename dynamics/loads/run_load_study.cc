@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <numeric>
@@ -326,8 +327,11 @@ LoadStudyResult RunLoadStudy(const LoadStudy& study, const LoadStudyOptions& opt
 LoadStudyResult RunLoadStudy(const LoadStudy& study, const PreparedStudy& prepared,
                              const LoadStudyOptions& options) {
   options.Validate();
+  std::function<bool()> goes_on;
+  if (options.progress) goes_on = [&] { return options.progress(0); };
   const ArrayMemory memory(BytesOfMotion(study, prepared.model.tree));
-  const Motion motion = TrackMotion(study, prepared, options.closure_tolerance, memory.resource());
+  const Motion motion =
+      TrackMotion(study, prepared, options.closure_tolerance, goes_on, memory.resource());
   RequireInsideTables(prepared.model, motion);
 
   LoadStudyResult result;

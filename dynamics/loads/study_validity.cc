@@ -107,7 +107,8 @@ void RequireValid(const LoadStudy& study) {
     throw std::invalid_argument(
         "a study has joint drives or a hand, not both; give `motion` joints or a grasp");
   }
-  if (study.times.empty()) throw std::invalid_argument("the study has no poses; give `steps`");
+  if (study.times.empty())
+    throw std::invalid_argument("the study has no poses; give times, in a file by `steps`");
   RequireIncreasing("times", study.times);
   RequirePeriod("cycle", study.cycle, study.times);
   for (size_t k = 0; k < study.drives.size(); ++k) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -349,11 +350,17 @@ size_t BytesOfMotion(const LoadStudy& study, const KinematicTree& tree) {
 }
 
 Motion TrackMotion(const LoadStudy& study, const PreparedStudy& prepared, double closure_tolerance,
-                   std::pmr::memory_resource* memory) {
+                   const std::function<bool()>& goes_on, std::pmr::memory_resource* memory) {
+  constexpr size_t kAsked = 4096;  // poses from question to question
+
   Tracker tracker(study, prepared, std::max(closure_tolerance, prepared.closure_tolerance), memory);
   tracker.Approach();
   const std::vector<double>& times = study.times;
-  for (size_t i = 0; i < times.size();) {
+  for (size_t i = 0, next = kAsked; i < times.size();) {
+    if (i >= next && goes_on) {
+      next += kAsked;
+      if (!goes_on()) throw std::runtime_error("the study was stopped before its end");
+    }
     if (i + Lanes4::kLanes <= times.size() && tracker.AdvancePacket(&times[i])) {
       i += Lanes4::kLanes;
       continue;

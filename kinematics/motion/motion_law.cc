@@ -151,8 +151,8 @@ RotationRates RatesOfRotationVector(const Vector3d& r, const Vector3d& rd, const
 MotionLaw MotionLaw::Uniform(double start, double speed, double acceleration) {
   if (!std::isfinite(start) || !std::isfinite(speed) || !std::isfinite(acceleration)) {
     throw std::invalid_argument(fmt::format(
-        "MotionLaw::Uniform: start = {}, speed = {}, acceleration = {}; all must be finite", start,
-        speed, acceleration));
+        "a drive without a table: start = {}, speed = {}, acceleration = {}; all must be finite",
+        start, speed, acceleration));
   }
   MotionLaw law;
   law.pieces_.push_back({0, 0, {start, speed, acceleration / 2, 0}});

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "vmech/mechanisms/direction.h"
 #include "vmech/mechanisms/exchange/mended_inertia.h"
 #include "vmech/mechanisms/files/reader.h"
 #include "vmech/mechanisms/files/writer.h"
@@ -30,7 +31,7 @@ std::string WithoutForbidden(std::string_view name) {
 
 Matrix3d AxesAlong(const Vector3d& z, const Matrix3d& near) {
   constexpr double kAlong = 0.9;  // cosine beyond which x says little
-  const double cosine = std::abs(z.normalized().dot(near.col(0)));
+  const double cosine = std::abs(NearUnitLength(z).normalized().dot(near.col(0)));
   return AxesFromZX(z, cosine < kAlong ? near.col(0) : near.col(1));
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "vmech/mechanisms/direction.h"
 #include "vmech/mechanisms/files/read_body.h"
 #include "vmech/mechanisms/files/read_dh.h"
 #include "vmech/mechanisms/mass_properties.h"
@@ -29,9 +30,10 @@ Matrix3d ReadAxes(const Node& map) {
     return Matrix3d::Identity();
   }
   const Vector3d z_axis = z.Vector3(Vector3d::UnitZ()), x_axis = x.Vector3(Vector3d::UnitX());
-  if (z_axis.norm() == 0) z.Error("the z axis has no length");
-  if (x_axis.norm() == 0) x.Error("the x axis has no length");
-  if (z_axis.norm() == 0 || x_axis.norm() == 0) return Matrix3d::Identity();
+  const bool no_z = z_axis == Vector3d::Zero(), no_x = x_axis == Vector3d::Zero();
+  if (no_z) z.Error("the z axis has no length");
+  if (no_x) x.Error("the x axis has no length");
+  if (no_z || no_x) return Matrix3d::Identity();
   Matrix3d R = Matrix3d::Identity();
   try {
     R = AxesFromZX(z_axis, x_axis);
@@ -40,8 +42,8 @@ Matrix3d ReadAxes(const Node& map) {
     return R;
   }
   if (!y) return R;
-  const Vector3d y_axis = y.Vector3(R.col(1));
-  if (y_axis.norm() == 0) {
+  const Vector3d y_axis = NearUnitLength(y.Vector3(R.col(1)));
+  if (y_axis == Vector3d::Zero()) {
     y.Error("the y axis has no length");
   } else if (y_axis.dot(R.col(1)) < 0) {
     y.Error("the axes are left-handed; y must be z cross x, the opposite of this");

@@ -40,6 +40,7 @@ TEST(CsvTable, IsRefusedWithTheLineOfWhatIsWrong) {
   EXPECT_EQ(Refusal("0,1\n1,2\n"),
             "t.csv:1:1: the first line must name the columns, not give numbers");
   EXPECT_EQ(Refusal("t;v\n0;1\n"), "t.csv:1:1: expected names of columns, kept apart by commas");
+  EXPECT_EQ(Refusal("t\tv\n0\t1\n"), "t.csv:1:1: expected names of columns, kept apart by commas");
   EXPECT_EQ(Refusal("t,t\n0,1\n"), "t.csv:1:3: the column 't' is given twice");
 }
 

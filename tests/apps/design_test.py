@@ -224,6 +224,27 @@ motion: {joint: lower, rpm: 10, turns: 0.25, steps: 8}
         self.assertIn("stiff: it changes stiffnesses", asked.stdout)
 
 
+FOUR_BAR = """vmech: "1.0"
+units: {length: mm, angle: deg}
+gravity: [0, -9.81, 0]
+ground: frame
+parameters: {rocker: 60}
+links:
+  frame: {anchors: {main: {}, foot: {origin: [100, 0, 0]}}}
+  crank: {mass: 1, center_of_gravity: [15, 0, 0], anchors: {main: {}, pin: {origin: [30, 0, 0]}}}
+  coupler: {mass: 1, center_of_gravity: [50, 0, 0], anchors: {pin: {}, tip: {origin: [90, 0, 0]}}}
+  rocker:
+    mass: 1
+    center_of_gravity: [30, 5, 0]
+    anchors: {foot: {}, tip: {origin: [rocker, 0, 0]}}
+joints:
+  main: {type: revolute, connects: [frame/main, crank/main], start: 60}
+  pin: {type: revolute, connects: [crank/pin, coupler/pin], start: 90}
+  tip: {type: revolute, connects: [coupler/tip, rocker/tip]}
+  foot: {type: revolute, connects: [frame/foot, rocker/foot]}
+"""
+
+
 def design(name, *words):
     """The rows of design.csv by name."""
     done = run("optimise", *words, "--out", WORK / name)
@@ -269,6 +290,23 @@ class Optimise(unittest.TestCase):
         self.assertAlmostEqual(drive, float(table["main.drive"]["after"]), delta=1e-9 * drive)
         self.assertLess(drive, float(table["main.drive"]["before"]))
 
+    def test_written_mechanism_is_on_the_branch_of_the_search(self):
+        # From what the file states, a rocker of 60 mm is assembled on one side and one of 70 mm on
+        # the other.
+        (WORK / "branch.yaml").write_text(FOUR_BAR, encoding="utf-8")
+        study = ('vmech_study: "1.0"\nmechanism: %s\nunits: {length: mm, angle: deg}\n'
+                 "motion: {joint: main, rpm: 60, turns: 0.1, steps: 10}\n")
+        (WORK / "branch-study.yaml").write_text(study % "branch.yaml", encoding="utf-8")
+        table = design("branch", WORK / "branch-study.yaml", "--minimise", "main.drive",
+                       "--vary", "rocker=55..100")
+        self.assertGreater(float(table["rocker"]["after"]), 70)
+        (WORK / "branch-again.yaml").write_text(study % "branch/mechanism.yaml", encoding="utf-8")
+        done = run("loads", WORK / "branch-again.yaml", "--out", WORK / "branch-loads", "-q")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        drive = max(abs(float(row["drive.force"]))
+                    for row in rows(WORK / "branch-loads" / "loads.csv"))
+        self.assertAlmostEqual(drive, float(table["main.drive"]["after"]), delta=1e-9 * drive)
+
     def test_gain_is_what_a_looser_limit_gives(self):
         tables = [design(f"gain-{limit}", EXAMPLES / STUDY, "--minimise", "main.drive.rms",
                               "--vary", "crank/pin.x=40..60", "--vary", "coupler.mass=0.2..0.5",
@@ -298,6 +336,10 @@ class Optimise(unittest.TestCase):
                 (["--minimise", "mass", "--vary", "crank.mass=1..2"], 2, "give bounds around it"),
                 (["--minimise", "mass", "--vary", "crank.mass=0.2..1", "--keep", "mass=1"], 1,
                  "--keep"),
+                (["--minimise", "mass", "--vary", "crank.mass=0.2..1e7"], 2,
+                 "bounds that are not a million times as wide"),
+                (["--minimise", "mass", "--vary", "crank.mass=0.2..1", "--vary",
+                  "crank.mass=0.3..2"], 2, "'crank.mass' is to vary twice"),
                 (["--minimise", "main.drive", "--vary", "crank/pin.z=-1..1"], 2,
                  "cannot stay closed")):
             done = run("optimise", EXAMPLES / STUDY, *words)

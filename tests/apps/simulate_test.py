@@ -244,6 +244,10 @@ class Simulate(unittest.TestCase):
         self.assertAlmostEqual(joints[len(joints) // 2][1], -math.pi / 2 - 0.1, delta=1e-12)
         self.assertAlmostEqual(len(joints) * joints[1][0], 1 / frequency, delta=1e-9)
 
+    def test_modes_print_rounding_as_zero(self):
+        run = self.modes_of(1, PENDULUM.replace("[0, -9.81, 0]", "[9.81, 0, 0]"))
+        self.assertRegex(run.stdout, r"\n  pivot +0 rad\n", run.stderr)
+
     def test_modes_say_what_is_unstable_and_what_cannot_be_told(self):
         run = self.modes_of(math.pi / 2)
         self.assertEqual(run.returncode, 0, run.stderr)

@@ -170,6 +170,37 @@ TEST_F(StudyReader, TakesThePosesOfATable) {
   EXPECT_EQ(cycle.cycle, 2);
 }
 
+// The curve of a table that repeats has no ends: half a turn of 0, 90, 0 deg in 2 s, with the
+// curvatures +-540 deg/s^2 that make both pieces meet again.
+TEST_F(StudyReader, MakesASmoothCycleOfATable) {
+  Write("move.csv", "t,value\n0,0\n1,90\n2,0\n");
+  const LoadStudy study = WithMotion("{joint: main, table: move.csv, repeats: true}").study;
+  const MotionLaw& law = study.drives[0].law;
+  EXPECT_NEAR(law.At(0).velocity, 0, kRounding * kTurn);
+  EXPECT_NEAR(law.At(0).acceleration, 1.5 * kTurn, 1e-12 * kTurn);
+  EXPECT_NEAR(law.At(1).acceleration, -1.5 * kTurn, 1e-12 * kTurn);
+  Write("hand.csv",
+        "t,x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,90,0,0,0.8,0,0,0.6\n3,10,5,0,0.6,0,0,0.8\n"
+        "4,0,0,0,1,0,0,0\n");
+  const HandLaw hand =
+      WithMotion("{grasp: handle, table: hand.csv, repeats: true}").study.hand->law;
+  EXPECT_NEAR((hand.At(0).V_WH - hand.At(4).V_WH).norm(), 0, 1e-13);
+  EXPECT_NEAR((hand.At(0).A_WH - hand.At(4).A_WH).norm(), 0, 1e-13);
+}
+
+// A second drive goes round with the first if its table fills the cycle.
+TEST_F(StudyReader, MakesASmoothCycleOfTheTablesOfAllDrives) {
+  Write("move.csv", "t,value\n0,0\n1,90\n2,0\n");
+  Write("lift.csv", "t,value\n0,5\n0.5,7\n1.5,1\n2,5\n");
+  const LoadStudy study = WithMotion(
+                              "[{joint: main, table: move.csv, repeats: true}, "
+                              "{joint: guide, table: lift.csv}]")
+                              .study;
+  const MotionLaw& law = study.drives[1].law;
+  EXPECT_NEAR(law.At(0).velocity, law.At(2).velocity, 1e-15);
+  EXPECT_NEAR(law.At(0).acceleration, law.At(2).acceleration, 1e-15);
+}
+
 TEST_F(StudyReader, ReadsTheMotionOfAHand) {
   Write("hand.csv", "t,x,y,z,qw,qx,qy,qz\n0,100,0,0,1,0,0,0\n1,200,0,0,0.8,0,0,0.6\n");
   const LoadStudy loads = WithMotion("{grasp: handle, table: hand.csv}").study;

@@ -154,6 +154,13 @@ TEST(RefusedStudy, StopsWhenItsProgressSaysSo) {
   LoadStudyOptions options;
   options.progress = [](size_t) { return false; };
   EXPECT_THAT(Refusal(LongStudy("slider-crank"), options), HasSubstr("stopped"));
+  // Before the first pose has its loads, too: the motion of millions of poses takes its time.
+  LoadStudy study = LongStudy("slider-crank");
+  for (int i = 0; i < 5000; ++i) study.times.push_back(0.5 + 1e-6 * (i + 1));
+  int asked = 0;
+  options.progress = [&](size_t done) { return ++asked > 1 || done > 0; };
+  EXPECT_THAT(Refusal(study, options), HasSubstr("stopped"));
+  EXPECT_EQ(asked, 1);
 }
 
 TEST(DeadCentres, AreWarnedOfBesideThemToo) {

@@ -13,6 +13,14 @@ TEST(AxesFromZX, GivesARightHandedFrameWithTheAskedZ) {
   EXPECT_NEAR(AxesFromZX({1, 2, 3}, {0, 1, 0}).determinant(), 1, 1e-14);
 }
 
+TEST(AxesFromZX, TakesAxesOfAnyLength) {
+  const Matrix3d R = AxesFromZX({1, 2, 3}, {0, 1, 0});
+  for (double length : {1e-300, 3e-160, 1e160, 1e300}) {
+    const Matrix3d scaled = AxesFromZX(length * Vector3d(1, 2, 3), length * Vector3d::UnitY());
+    EXPECT_NEAR((scaled - R).norm(), 0, 1e-15) << length;
+  }
+}
+
 TEST(AxesFromZX, RefusesAnAxisWithoutLengthOrDirection) {
   EXPECT_THROW(AxesFromZX({0, 0, 0}, {1, 0, 0}), std::invalid_argument);
   EXPECT_THROW(AxesFromZX({0, 0, 1}, {0, 0, 5}), std::invalid_argument);

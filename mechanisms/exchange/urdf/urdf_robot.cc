@@ -116,7 +116,8 @@ class Parser {
       const std::vector<double> q = errors_.Numbers(
           *quaternion, 4, origin.line, fmt::format("'quat_xyzw' of <origin> of {}", what));
       const Eigen::Quaterniond rotation(q[3], q[0], q[1], q[2]);
-      if (rotation.norm() > 0) return rotation.normalized().toRotationMatrix();
+      constexpr double kNothing = 1e-100;  // whose square may vanish
+      if (rotation.norm() > kNothing) return rotation.normalized().toRotationMatrix();
       errors_.Add(origin.line, fmt::format("'quat_xyzw' of {} has no length", what));
     }
     const Vector3d rpy = Vector(origin, "rpy", Vector3d::Zero(), what);

@@ -74,6 +74,10 @@ TEST(DurationsFromTimes, AddUpToTheTimeCovered) {
   EXPECT_EQ(DurationsFromTimes(times), (std::vector<double>{0.5, 1.5, 1.5, 0.5}));
   EXPECT_EQ(DurationsFromTimes(std::vector<double>{7}), (std::vector<double>{1}));
   EXPECT_THROW(DurationsFromTimes(std::vector<double>{0, 0}), std::invalid_argument);
+  // A cycle of 6 s: the first pose follows the last by 2 s.
+  EXPECT_EQ(DurationsFromTimes(times, 6), (std::vector<double>{1.5, 1.5, 1.5, 1.5}));
+  EXPECT_EQ(DurationsFromTimes(std::vector<double>{7}, 3), (std::vector<double>{3}));
+  EXPECT_EQ(DurationsFromTimes(times, 4), DurationsFromTimes(times));
 }
 
 TEST(DutyCycle, RefusesWhatIsNotACycle) {

@@ -43,6 +43,21 @@ const Joint& JointOf(const Mechanism& mechanism, const std::string& name) {
   return mechanism.joints.at(FindJoint(mechanism, name));
 }
 
+// An axis has a direction alone; the squares of these lengths vanish.
+TEST(UrdfRobots, TurnAboutAxesOfAnyLength) {
+  for (const std::string& axis : {"3e-160 0 4e-160", "3e-200 0 4e-200", "3e20 0 4e20"}) {
+    const Mechanism mechanism =
+        ReadText(
+            "<robot name='r'><link name='a'/><link name='b'><inertial><mass value='1'/>"
+            "</inertial></link><joint name='j' type='continuous'><parent link='a'/>"
+            "<child link='b'/><axis xyz='" +
+            axis + "'/></joint></robot>")
+            .mechanism;
+    const Vector3d z = mechanism.anchor(JointOf(mechanism, "j").first).X_LA.R.col(2);
+    EXPECT_NEAR((z - Vector3d(0.6, 0, 0.8)).norm(), 0, kRounding) << axis;
+  }
+}
+
 /// A manipulator: a base without mass that has an inertia, a wrist whose inertia was rounded to
 /// whole kg mm^2 and that must be bent, a gripper whose fingers follow each other, a tool frame, a
 /// camera frame, a cable without mass, and what simulators add.

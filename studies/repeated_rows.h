@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace vmech {
+
+/// Rows of a table with their times [s].
+template <typename Row>
+struct TimedRows {
+  std::vector<double> times;  ///< increasing [s]
+  std::vector<Row> rows;      ///< one for each time
+};
+
+/// The rows of a cycle, whose last one brings the first again, between those of the cycles before
+/// and after it: so many that a spline through all of them does not feel where they end. From row
+/// to row the curvature that an end adds shrinks to less than half.
+/// Precondition: two rows or more.
+template <typename Row>
+TimedRows<Row> WithCyclesAround(const TimedRows<Row>& cycle) {
+  constexpr size_t kFar = 60;  // rows; 2^-60 is below rounding
+  const size_t count = cycle.times.size() - 1;
+  const size_t before = (kFar + count - 1) / count, all = 2 * before + 1;
+  const double period = cycle.times.back() - cycle.times.front();
+  TimedRows<Row> table;
+  for (size_t i = 0; i <= all * count; ++i) {
+    const double turn = static_cast<double>(i / count) - static_cast<double>(before);
+    table.times.push_back(cycle.times[i % count] + turn * period);
+    table.rows.push_back(cycle.rows[i % count]);
+  }
+  return table;
+}
+
+}  // namespace vmech
