@@ -76,6 +76,16 @@ void EnvelopeLdlt<T>::Solve(T* x) const {
   }
 }
 
+template <typename T>
+void EnvelopeLdlt<T>::MotionOfPivot(int i, T* z) const {
+  std::fill(z, z + size(), T(0));
+  z[i] = T(1);
+  for (int k = i; k > 0; --k) {
+    const T* const row = values_.data() + row_[k];
+    for (int j = first_[k]; j < k; ++j) z[j] -= row[j] * z[k];
+  }
+}
+
 template class EnvelopeLdlt<double>;
 template class EnvelopeLdlt<Dual>;
 template class EnvelopeLdlt<Taped4>;

@@ -40,6 +40,9 @@ class EnvelopeLdlt {
 
   /// x = A^-1 x.
   void Solve(T* x) const;
+  /// z [size] with L'z = e_i: z_i = 1, nothing behind i, and z'A z is the pivot. Where that is zero
+  /// A z = 0.
+  void MotionOfPivot(int i, T* z) const;
 
  private:
   std::vector<int> first_;

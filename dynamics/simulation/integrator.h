@@ -19,7 +19,7 @@ struct InitialValueProblem {
   double max_step = 0;                      ///< longest step [s]; 0: no bound
   // Of F.
   std::vector<bool> differential;  ///< [size] the others have no slopes, and count in no error test
-  double first_step = 0;           ///< [s]
+  double first_step = 0;           ///< of a restart that does not say [s]
 };
 
 /// What an integrator has done since it began.
@@ -33,8 +33,9 @@ class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  /// Goes on from (t, y), with slopes y' of F. The counts go on.
-  virtual void Restart(double t, const double* y, const double* slopes) = 0;
+  /// Goes on from (t, y), with slopes y' of F, and first by `step` [s], if it is not 0. The counts
+  /// go on.
+  virtual void Restart(double t, const double* y, const double* slopes, double step) = 0;
   /// One step, not beyond `end`. False if it fails; error() says why.
   virtual bool Step(double end) = 0;
   virtual double time() const = 0;      ///< at the end of the last step

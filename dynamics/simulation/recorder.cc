@@ -220,7 +220,6 @@ void Recorder::Finish() {
   }
   const double length = prepared_.simulation.norm_length;
   loads.norm_length = length > 0 ? length : prepared_.model.tree.length;
-  loads.notes = prepared_.notes;
   const double largest = Largest(arrays_->power_error_scales);
   for (double& error : arrays_->power_errors) error = largest > 0 ? error / largest : 0;
   loads.max_closure = Largest(arrays_->closures);

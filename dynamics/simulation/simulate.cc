@@ -7,15 +7,18 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "vmech/dynamics/rigid_body/passive.h"
 #include "vmech/dynamics/simulation/equations/equations_of_motion.h"
 #include "vmech/dynamics/simulation/equations/index_two.h"
 #include "vmech/dynamics/simulation/equilibrium.h"
 #include "vmech/dynamics/simulation/integrator.h"
+#include "vmech/dynamics/simulation/motions_without_inertia.h"
 #include "vmech/dynamics/simulation/prepared_simulation.h"
 #include "vmech/dynamics/simulation/recorder.h"
 #include "vmech/dynamics/simulation/rough_places.h"
+#include "vmech/dynamics/simulation/run_audit.h"
 #include "vmech/dynamics/simulation/start_state.h"
 #include "vmech/dynamics/simulation/sudden_events.h"
 #include "vmech/kinematics/loops/loops.h"
@@ -67,6 +70,7 @@ class Run {
         events_(
             simulation_, &equations_, [this](double time) { return StateAt(time); },
             &result->events),
+        audit_(options, &equations_),
         may_be_stiff_(options.method == SimulationMethod::kAutomatic &&
                       Decays(prepared.simulation)),
         y_(VectorXd::Zero(equations_.size())),
@@ -95,6 +99,7 @@ class Run {
     integrator_ = MakeIntegrator(problem_, statistics_.method);
     Restart();
     RecordUntil(time_);
+    TellOfStanding();
     while (GoesOn()) TakeStep();
     if (result_.times.empty() || result_.times.back() < time_) RecordHere();
     CountUp();
@@ -119,6 +124,7 @@ class Run {
 
   void FindStart() {
     time_ = last_look_ = changed_at_ = start();
+    audit_.BeginAt(time_);
     const StartState start = FindStartState(prepared_, &equations_);
     result_.moved_rates = start.moved_rates;
     const KinematicTree& tree = equations_.tree();
@@ -126,6 +132,16 @@ class Run {
     y_.segment(tree.nq, tree.nv) = start.v;
     events_.Start(time_, &y_);
     events_.LookAround(time_, y_);
+    audit_.Begin();
+  }
+
+  /// What stands still for want of inertia, or of an answer to a force.
+  void TellOfStanding() {
+    StopIfUnresisted();
+    if (result_.status != SimulationStatus::kNotRun) return;
+    for (std::string& note : DescribeStanding(equations_.tree(), equations_.motion())) {
+      result_.notes.push_back(std::move(note));
+    }
   }
 
   /// The problem for IDAS. Its unknowns begin with those of the other methods.
@@ -142,9 +158,9 @@ class Run {
     dense_ = VectorXd::Zero(problem_.size);
   }
 
-  void Restart() {
+  void Restart(double step = 0) {
     if (index_two_) index_two_->Start(time_, &y_, &slopes_);
-    integrator_->Restart(time_, y_.data(), slopes_.data());
+    integrator_->Restart(time_, y_.data(), slopes_.data(), step);
     ++statistics_.restarts;
   }
 
@@ -164,7 +180,8 @@ class Run {
                       "accuracy",
                       options_.max_steps));
     }
-    return true;
+    const std::string creeping = audit_.DescribeCreeping(integrator_->counts().steps, time_, end());
+    return creeping.empty() || Stop(SimulationStatus::kFailed, DescribeFailure(creeping));
   }
 
   bool Stop(SimulationStatus status, const std::string& why) {
@@ -175,10 +192,29 @@ class Run {
 
   void TakeStep() {
     if (integrator_->Step(end())) {
-      GoThrough(integrator_->time());
+      const double to = integrator_->time();
+      IsTrusted(to) ? GoThrough(to) : TakeShorterStep(to - time_);
     } else {
       const std::string why = integrator_->error();
       if (!TryAgain()) Stop(SimulationStatus::kFailed, DescribeFailure(why));
+    }
+  }
+
+  bool IsTrusted(double to) {
+    return !audit_.IsDoubtful(to - time_) ||
+           audit_.Holds(time_, to, y_, LargestDrift(),
+                        [this](double time) { return StateAt(time); });
+  }
+
+  /// The last step again, which has led astray.
+  void TakeShorterStep(double step) {
+    constexpr double kShorter = 0.1, kShortest = 1e-15;  // of the run
+    ++statistics_.error_test_failures;
+    if (step < kShortest * (end() - start())) {
+      Stop(SimulationStatus::kFailed, DescribeFailure("steps do not keep loops and energy"));
+    } else {
+      equations_.Place(time_, y_.data(), y_.data() + equations_.tree().nq);
+      Restart(kShorter * step);
     }
   }
 
@@ -191,6 +227,7 @@ class Run {
     y_ = dense_;
     if (found.ends_run)
       Stop(SimulationStatus::kReached, "a coordinate that ends the run is reached");
+    StopIfUnresisted();
     RecordUntil(time_);
     const bool leapt = leap_.has_value();
     bool near_singular = false;
@@ -205,10 +242,14 @@ class Run {
     } else {
       ReturnToLoops();
       near_singular = NearSingularPose(equations_, time_ - from);
+      if (!near_singular) tried_pivot_ = 0;
       if (!near_singular) ChangeMethodIfStiff();
     }
     events_.LookAround(time_, y_);
-    if (near_singular && time_ < end() && result_.status == SimulationStatus::kNotRun) Leap();
+    audit_.Begin();
+    if (near_singular && time_ < end() && result_.status == SimulationStatus::kNotRun) {
+      LeapIfElsewhere();
+    }
   }
 
   std::string DescribeFailure(const std::string& why) {
@@ -251,11 +292,25 @@ class Run {
     return true;
   }
 
+  /// Where there was no leap there is none until the pose is nearer, or another one.
+  void LeapIfElsewhere() {
+    constexpr double kElsewhere = 1.1;
+    const double pivot = equations_.motion().smallest_pivot();
+    if (pivot < kElsewhere * tried_pivot_ && tried_pivot_ < kElsewhere * pivot) return;
+    tried_pivot_ = pivot;
+    Leap();
+  }
+
   bool Leap() {
     equations_.Close(time_, y_.data());
     leap_ = LeapOverSingularPose(time_, y_.head(equations_.size()), &equations_);
     if (!leap_) return false;
-    GoThrough(leap_->from + leap_->step);
+    const double to = leap_->from + leap_->step;
+    if (!audit_.KeepsEnergy(time_, y_.data(), to, StateAt(to))) {
+      leap_.reset();
+      return false;
+    }
+    GoThrough(to);
     return true;
   }
 
@@ -279,20 +334,23 @@ class Run {
         StateAt(at);
       }
       recorder_.Record(at, dense_.data());
-      RefuseUnresisted();
+      StopIfOutOfBalance();
     }
   }
 
-  /// A force along a freedom without inertia has no answer.
-  void RefuseUnresisted() {
-    constexpr double kRounding = 1e-7;
-    const ConstrainedMotion& motion = equations_.motion();
-    const double largest = motion.ws().tau.lpNorm<Eigen::Infinity>();
-    if (motion.unresisted() <= kRounding * largest) return;
-    Stop(SimulationStatus::kFailed,
-         fmt::format("{:.4g} N or N m act along a freedom without inertia, and nothing resists "
-                     "them; give its link mass properties, or leave the load out",
-                     motion.unresisted()));
+  /// A force along a motion without inertia has no answer.
+  void StopIfUnresisted() {
+    if (result_.status != SimulationStatus::kNotRun) return;
+    if (index_two_) equations_.Evaluate(time_, y_.data(), y_.data() + equations_.tree().nq);
+    const std::string why = DescribeUnresisted(equations_.tree(), equations_.motion());
+    if (!why.empty()) Stop(SimulationStatus::kFailed, why);
+  }
+
+  void StopIfOutOfBalance() {
+    if (result_.status != SimulationStatus::kNotRun) return;
+    const std::string why = audit_.DescribeImbalance(
+        result_.energies.back(), statistics_.steps + integrator_->counts().steps);
+    if (!why.empty()) Stop(SimulationStatus::kFailed, why);
   }
 
   void RecordHere() {
@@ -351,6 +409,7 @@ class Run {
     statistics_.method = SimulationMethod::kBdf;
     result_.events.push_back({time_, SimulationEvent::Kind::kMethodChanged, {}, 0, 0});
     integrator_ = MakeIntegrator(problem_, statistics_.method);
+    audit_.BeginAt(time_);
     Restart();
   }
 
@@ -375,6 +434,7 @@ class Run {
   EquationsOfMotion equations_;
   Recorder recorder_;
   SuddenEvents events_;
+  RunAudit audit_;
   InitialValueProblem problem_;
   std::unique_ptr<Integrator> integrator_;
   double time_ = 0;
@@ -384,6 +444,7 @@ class Run {
   std::optional<vmech::Leap> leap_;       ///< the last step was one
   size_t next_ = 0;                       ///< of the times
   long next_look_ = 100, looked_at_ = 0;  ///< steps at which stiffness is, and was, looked at
+  double tried_pivot_ = 0;                ///< where no leap was found, near a singular pose
   double failed_at_ = -1;                 ///< when a step failed last [s]
   double last_look_ = 0;                  ///< when [s]
   long changes_ = 0;                      ///< of contacts

@@ -62,12 +62,13 @@ ConstrainedMotion::ConstrainedMotion(const LoadModel& model)
   if (open) {
     for (int v = 0; v < nv; ++v) free_[v] = v;
   }
-  const VectorXd scale = VelocityScale(tree_);
-  free_unit_ = scale(free_);
+  unit_ = VelocityScale(tree_);
+  free_unit_ = unit_(free_);
   column_sizes_ = columns_here_ = VectorXd::Zero(nv);
-  largest_columns_ = scale.cwiseAbs2().cwiseInverse();
+  largest_columns_ = unit_.cwiseAbs2().cwiseInverse();
   least_inertia_ = model.no_inertia * free_unit_.cwiseAbs2().cwiseInverse();
   massless_.resize(f);
+  inert_.reserve(f);
   if (open) M_ = MatrixXd::Zero(nv, nv);
   N_ = MatrixXd::Zero(nv, f);
   if (open) N_.setIdentity();
@@ -94,6 +95,7 @@ void ConstrainedMotion::SetPose(const double* q) noexcept {
   std::copy(q, q + tree_.nq, ws_.q.data());
   NormaliseQuaternions(tree_, ws_.q.data());
   ForwardKinematics(tree_, ws_.q.data(), &ws_.tree);
+  FollowMechanism();
   LoopErrors(tree_, &ws_.tree);
   LoopJacobian(tree_, &ws_.tree);
   ws_.dependents.Factor(ws_.tree);
@@ -116,6 +118,21 @@ void ConstrainedMotion::MeasureColumns() noexcept {
     }
   }
   column_sizes_ = column_sizes_.cwiseMax(columns_here_.cwiseMin(largest_columns_));
+}
+
+/// Inertias about a point far away are known to the rounding of its distance squared.
+void ConstrainedMotion::FollowMechanism() noexcept {
+  constexpr double kFar = 10;  // characteristic lengths
+  double mass = 0;
+  Vector3d moment = Vector3d::Zero();
+  for (size_t i = 0; i < tree_.nodes.size(); ++i) {
+    mass += tree_.nodes[i].mass;
+    moment += tree_.nodes[i].mass * Vector3Of(ws_.tree.nodes[i + 1].X.p);
+  }
+  if (!(moment.norm() > kFar * tree_.length * mass)) return;
+  ws_.tree.reference += moment / mass;
+  ws_.tree.at(-1).X.p = TripleOf<double>(-ws_.tree.reference);
+  ForwardKinematics(tree_, ws_.q.data(), &ws_.tree);
 }
 
 double ConstrainedMotion::closure() const noexcept {
@@ -163,9 +180,11 @@ void ConstrainedMotion::FindMovingLinks(int k) noexcept {
 /// none.
 void ConstrainedMotion::FactorInertia() noexcept {
   const int f = freedoms();
+  const double largest = f > 0 ? A_.diagonal().maxCoeff() : 0;
+  const double least = f > 0 && least_inertia_.maxCoeff() > 0 ? least_inertia_.maxCoeff() : 1;
   for (int i = 0; i < B_.rows(); ++i) {
     const double size2 = B_.row(i).squaredNorm();
-    weight_[i] = size2 > 0 ? A_.diagonal().maxCoeff() / size2 : 0;
+    weight_[i] = size2 > 0 ? std::max(largest, least) / size2 : 0;
   }
   for (int i = 0; i < f; ++i) massless_[i] = A_(i, i) <= least_inertia_[i];
   inertia_factors_.SetZero();
@@ -178,6 +197,25 @@ void ConstrainedMotion::FactorInertia() noexcept {
     }
   }
   inertia_factors_.Factor();
+  FindMotionsWithoutInertia();
+}
+
+/// A pivot is the inertia that a freedom has at least, however those of the pivots before it go
+/// along.
+void ConstrainedMotion::FindMotionsWithoutInertia() noexcept {
+  const int f = freedoms();
+  constexpr double kBeside = 2;  // what stands for no inertia
+  inert_.clear();
+  for (int i = 0; i < f; ++i) {
+    const double inverse = inertia_factors_.inverse_pivot(i);
+    if (inverse == 0 || 1 <= kBeside * least_inertia_[f - 1 - i] * inverse) inert_.push_back(i);
+  }
+}
+
+VectorXd ConstrainedMotion::MotionWithoutInertia(int motion) const {
+  VectorXd z(freedoms());
+  inertia_factors_.MotionOfPivot(inert_[static_cast<size_t>(motion)], z.data());
+  return N_ * z.reverse();
 }
 
 void ConstrainedMotion::FactorHeld() noexcept {
@@ -193,16 +231,28 @@ void ConstrainedMotion::FactorHeld() noexcept {
   held_factors_.Factor();
 }
 
+/// Takes from right_ what acts along motions without inertia, so that they stand still.
+void ConstrainedMotion::LeaveOutUnresisted() noexcept {
+  const int f = freedoms();
+  double largest = 0;
+  left_out_ = {};
+  for (size_t i = 0; i < inert_.size(); ++i) {
+    inertia_factors_.MotionOfPivot(inert_[i], reversed_.data());
+    double force = 0;
+    for (int k = 0; k < f; ++k) force += reversed_[f - 1 - k] * right_[k];
+    const int freedom = f - 1 - inert_[i];
+    right_[freedom] -= force;
+    const double size = std::abs(force) * free_unit_[freedom];
+    if (size <= largest) continue;
+    largest = size;
+    left_out_ = {std::abs(force), size, static_cast<int>(i)};
+  }
+}
+
 /// A s = right - B' multipliers, B s = held. Uses `right_` up.
 void ConstrainedMotion::SolveFree(VectorXd* s) noexcept {
   const int f = freedoms();
-  unresisted_ = 0;
-  for (int k = 0; k < f; ++k) {
-    if (!massless_[k]) continue;
-    if (B_.rows() == 0 || B_.col(k).isZero(0))
-      unresisted_ = std::max(unresisted_, std::abs(right_[k]));
-    right_[k] = 0;
-  }
+  if (!inert_.empty()) LeaveOutUnresisted();
   for (int i = 0; i < B_.rows(); ++i) {
     for (int k = 0; k < f; ++k) right_[k] += weight_[i] * held_[i] * B_(i, k);
   }
@@ -262,9 +312,21 @@ void ConstrainedMotion::Accelerate(const VectorXd& forces, const double* slopes)
     held_[static_cast<int>(i)] = (slopes ? slopes[i] : 0) - SlopeOf(rows_[i]);
   }
   SolveFree(&s_);
+  JudgeUnresisted(forces);
   multipliers_ *= -1;
   ws_.vdot.noalias() += N_ * s_;
   ForwardAccelerations(tree_, ws_.vdot.data(), &ws_.tree);
+}
+
+/// Of the forces there are, before they cancel: rounding is beside those.
+void ConstrainedMotion::JudgeUnresisted(const VectorXd& forces) noexcept {
+  unresisted_ = left_out_;
+  if (unresisted_.motion < 0) return;
+  double largest = 0;
+  for (int v = 0; v < tree_.nv; ++v) {
+    largest = std::max(largest, unit_[v] * (std::abs(forces[v]) + std::abs(ws_.tau[v])));
+  }
+  unresisted_.share = largest > 0 ? unresisted_.share / largest : 0;
 }
 
 double ConstrainedMotion::Close(double tolerance, double* q) noexcept {

@@ -18,6 +18,13 @@ struct RateRow {
 /// The row of the rate of a freedom.
 RateRow RateRowOf(const KinematicTree& tree, FreedomId at);
 
+/// The largest force along free motions that have no inertia: nothing answers it.
+struct UnresistedForce {
+  double force = 0;  ///< along a motion one of whose freedoms moves at 1 [N], [N m]
+  double share = 0;  ///< of the largest force in the mechanism; rounding leaves 1e-7 at most
+  int motion = -1;   ///< which of the motions without inertia; -1: none
+};
+
 /// How a tree with loops can move at one pose, and how forces accelerate it. N are the free
 /// motions, C N = 0, of the independent freedoms (`driven` of the model's partition; it has no idle
 /// ones), and some rates b_i v are held:
@@ -28,8 +35,10 @@ RateRow RateRowOf(const KinematicTree& tree, FreedomId at);
 /// with C a + bias = 0 and B = b N. The first is the projection of given velocities in the metric
 /// of M. Redundant loop equations need no care (DependentSolver), nor do redundant rows of B, nor
 /// rows that no free motion moves, which nothing holds.
-/// Free motions without inertia (below LoadModel::no_inertia) stand still, and so do their
-/// accelerations. Time is linear in the links and loops, times the number of freedoms. Nothing
+/// Free motions without inertia (below LoadModel::no_inertia), be it of one freedom or of several
+/// that move together, stand still, and so do their accelerations: Unresisted() is the force along
+/// them that nothing answers. Everything is about a point near the mechanism, wherever it goes.
+/// Time is linear in the links and loops, times the number of freedoms. Nothing
 /// allocates but the constructor and Hold.
 class ConstrainedMotion {
  public:
@@ -62,8 +71,12 @@ class ConstrainedMotion {
   void Accelerate(const VectorXd& forces, const double* slopes) noexcept;
   /// The forces along the held rows that this took.
   const VectorXd& held_forces() const noexcept { return multipliers_; }
-  /// The largest force along a free motion without inertia, which was left out [N], [N m].
-  double unresisted() const noexcept { return unresisted_; }
+  /// What the last Accelerate left out.
+  const UnresistedForce& unresisted() const noexcept { return unresisted_; }
+  /// How many free motions have no inertia at the pose.
+  int without_inertia() const noexcept { return static_cast<int>(inert_.size()); }
+  /// [nv] one of them.
+  VectorXd MotionWithoutInertia(int motion) const;
 
   /// Closes the loops of q [nq] to `tolerance` by the nearest step in the metric of M that leaves
   /// the held rows alone. Leaves the pose set. Returns what is left.
@@ -94,15 +107,20 @@ class ConstrainedMotion {
   void DropRowsThatStand() noexcept;
   void FactorInertia() noexcept;
   void FactorHeld() noexcept;
+  void FindMotionsWithoutInertia() noexcept;
+  void FollowMechanism() noexcept;
+  void LeaveOutUnresisted() noexcept;
+  void JudgeUnresisted(const VectorXd& forces) noexcept;
   void SolveFree(VectorXd* s) noexcept;
 
   const KinematicTree& tree_;
   LoadWorkspace<double> ws_;
-  std::vector<int> free_;   ///< the independent velocities
-  VectorXd least_inertia_;  ///< of each
-  VectorXd free_unit_;      ///< 1 rad/s, or a characteristic length a second, of each
-  VectorXd row_unit_;       ///< the same of the held rates
-  VectorXd column_sizes_;   ///< [nv] squares, dimensionless but for the velocity
+  std::vector<int> free_;                    ///< the independent velocities
+  VectorXd least_inertia_;                   ///< of each
+  VectorXd unit_;                            ///< [nv] 1 rad/s, or a characteristic length a second
+  VectorXd free_unit_;                       ///< of the independent velocities
+  VectorXd row_unit_;                        ///< the same of the held rates
+  VectorXd column_sizes_;                    ///< [nv] squares, dimensionless but for the velocity
   VectorXd columns_here_, largest_columns_;  ///< the same at a pose; as far as they count
   std::vector<bool> massless_;
   MatrixXd M_, N_, MN_, A_;
@@ -111,7 +129,8 @@ class ConstrainedMotion {
   MatrixXd B_, Y_;                     ///< Y = A^-1 B'
   EnvelopeLdlt<double> held_factors_;  ///< of B A^-1 B'
   VectorXd driving_, right_, s_, held_, multipliers_, weight_, step_, reversed_, momenta_;
-  double unresisted_ = 0;
+  std::vector<int> inert_;  ///< pivots of inertia_factors_ of motions without inertia
+  UnresistedForce left_out_, unresisted_;  ///< by SolveFree; by Accelerate
 };
 
 /// Brings the quaternions of q [nq] to unit length.

@@ -23,8 +23,10 @@ constexpr double kNearlySingular = 1e-2;
 constexpr double kNearest = 1e-9;
 /// Dimensionless pivots at a singular pose that count as zero.
 constexpr double kSingularRank = 1e-4;
-/// A choice of freedoms is bad at this share of its best pivot.
-constexpr double kWorn = 1e-2;
+/// A choice of freedoms is bad at this share of its best pivot; and, near poses at which loops lose
+/// rank, at the other one: there it must not be the choice that ends what can be evaluated.
+constexpr double kWorn = 1e-2, kWornNearSingular = 0.5;
+constexpr double kNearSingular = 1e-4;
 
 LoadModel WithPartition(LoadModel model, const CoordinatePartition& partition) {
   model.partition = partition;
@@ -124,7 +126,8 @@ bool EquationsOfMotion::ChooseFreedoms(const VectorXd& q) {
 }
 
 bool EquationsOfMotion::ChoosesBadly() const {
-  return regular_->motion.smallest_pivot() < kWorn * regular_->best_pivot;
+  const double pivot = regular_->motion.smallest_pivot();
+  return pivot < (pivot < kNearSingular ? kWornNearSingular : kWorn) * regular_->best_pivot;
 }
 
 MotionSample EquationsOfMotion::DriveAt(size_t drive, double time) const {
@@ -306,7 +309,12 @@ double EquationsOfMotion::KineticEnergyHere() const {
 }
 
 double EquationsOfMotion::WeightEnergyHere() const {
-  return WeightEnergy(tree_.mechanism.gravity_W, now_->motion.ws().inertias);
+  const LoadWorkspace<double>& ws = now_->motion.ws();
+  const Vector3d& gravity = tree_.mechanism.gravity_W;
+  double mass = 0;
+  for (const TreeNode& node : tree_.nodes) mass += node.mass;
+  const Vector3d moved = ws.tree.reference - tree_.reference;
+  return WeightEnergy(gravity, ws.inertias) - mass * gravity.dot(moved);
 }
 
 }  // namespace vmech

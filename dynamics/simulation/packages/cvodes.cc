@@ -39,17 +39,18 @@ class Cvodes : public Integrator {
     if (matrix_) SUNMatDestroy(matrix_);
   }
 
-  void Restart(double t, const double* y, const double*) override {
+  void Restart(double t, const double* y, const double*, double step) override {
     vectors_.Copy(y, y_);
     time_ = t;
     if (started_) {
       before_ = counts();
       RequireSundials(CVodeReInit(memory_, t, y_) == 0);
-      return;
+    } else {
+      started_ = true;
+      RequireSundials(CVodeInit(memory_, Rates, t, y_) == 0);
+      SetUp();
     }
-    started_ = true;
-    RequireSundials(CVodeInit(memory_, Rates, t, y_) == 0);
-    SetUp();
+    CVodeSetInitStep(memory_, step);
   }
 
   bool Step(double end) override {

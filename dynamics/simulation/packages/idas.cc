@@ -42,7 +42,7 @@ class Idas : public Integrator {
     if (matrix_) SUNMatDestroy(matrix_);
   }
 
-  void Restart(double t, const double* y, const double* slopes) override {
+  void Restart(double t, const double* y, const double* slopes, double step) override {
     vectors_.Copy(y, y_);
     vectors_.Copy(slopes, slopes_);
     time_ = t;
@@ -54,7 +54,7 @@ class Idas : public Integrator {
       RequireSundials(IDAInit(memory_, Residual, t, y_, slopes_) == 0);
       SetUp();
     }
-    IDASetInitStep(memory_, problem_.first_step);
+    IDASetInitStep(memory_, step > 0 ? step : problem_.first_step);
   }
 
   bool Step(double end) override {
