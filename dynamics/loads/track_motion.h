@@ -10,8 +10,8 @@ namespace vmech {
 
 /// Follows the motion from pose to pose on one assembly branch. Poses come from the loop equations;
 /// between them the drive moves in smaller steps where a full one would be too long to be sure of
-/// the branch. `goes_on` is asked now and then; false stops it. The motion's arrays lie in `memory`,
-/// which must outlive them; those of its copies do not.
+/// the branch. `goes_on` is asked now and then; false stops it. The motion's arrays lie in
+/// `memory`, which must outlive them; those of its copies do not.
 /// @throws std::runtime_error naming pose and time where the motion cannot be followed, or where it
 /// was stopped.
 Motion TrackMotion(const LoadStudy& study, const PreparedStudy& prepared, double closure_tolerance,
