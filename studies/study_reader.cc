@@ -250,6 +250,11 @@ class StudyReader {
     file_.study.units = DisplayUnitsOf(root_["units"], units_);
     file_.study.stop_at_limits =
         root_["limits"].Word<bool>({{"warn", false}, {"stop", true}}, false);
+    if (const Node limits = root_["limits"]; limits && root_["simulation"]) {
+      limits.Error(
+          "is for a motion that is prescribed: in a simulation joints stop at their limits and "
+          "rebound; leave it out, and give `restitution`, or end the run there by `watch`");
+    }
     file_.catalogue = ReadNamedCatalogue(root_["catalogue"], folder());
   }
 

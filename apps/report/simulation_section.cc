@@ -106,12 +106,6 @@ Markup SimulationSection(const StudyFile& file, const SimulationResult& simulati
                      simulation.status == SimulationStatus::kReached;
   text += whole ? html::Paragraph(simulation.message)
                 : html::Notice(simulation.message, html::Tone::kBad);
-  for (const MovedRate& moved : simulation.moved_rates) {
-    text += html::Paragraph(
-        fmt::format("The loops do not allow {} to start at {}; it starts at {}.",
-                    NameOfFreedom(file.study.mechanism.joints[moved.at.joint], moved.at.freedom),
-                    plot::FormatSignificant(moved.from, 5), plot::FormatSignificant(moved.to, 5)));
-  }
   return text + EnergyPlot(simulation) + html::Heading(3, "Events") + EventTable(file, simulation) +
          html::Heading(3, "How it was computed") + Statistics(simulation);
 }

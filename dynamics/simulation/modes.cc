@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -20,7 +21,8 @@ constexpr double kNone = 1e-9;
 /// Motions that have inertia; along the others springs give way at once.
 struct Condensed {
   MatrixXd M, D, K;
-  MatrixXd motions;  ///< [freedoms, those with inertia]
+  MatrixXd motions;            ///< [freedoms, those with inertia]
+  bool is_damped_off = false;  ///< dampers act along the others
 };
 
 /// `scale`: what of each freedom counts as one; inertia is compared in these units.
@@ -34,12 +36,16 @@ Condensed Condense(const MatrixXd& M, const MatrixXd& D, const MatrixXd& K, cons
   const MatrixXd K_light = light.transpose() * K * light;
   const double stiffest = (unit * K * unit).lpNorm<Eigen::Infinity>();
   if (without > 0 && K_light.lpNorm<Eigen::Infinity>() > kNone * stiffest) {
-    motions -= light * Eigen::LDLT<MatrixXd>(K_light).solve(light.transpose() * K * motions);
+    Eigen::CompleteOrthogonalDecomposition<MatrixXd> given_way(K_light);
+    given_way.setThreshold(kNone);
+    motions -= light * given_way.solve(light.transpose() * K * motions);
   }
+  const bool damped = without > 0 && (light.transpose() * D * unit).lpNorm<Eigen::Infinity>() >
+                                         kNone * (unit * D * unit).lpNorm<Eigen::Infinity>();
   const auto reduced = [&](const MatrixXd& A) -> MatrixXd {
     return motions.transpose() * A * motions;
   };
-  return {reduced(M), reduced(D), reduced(K), motions};
+  return {reduced(M), reduced(D), reduced(K), motions, damped};
 }
 
 Mode MakeMode(std::complex<double> eigenvalue, const Eigen::VectorXcd& x, const MatrixXd& N,
@@ -121,6 +127,12 @@ void FindModesOf(SmallMotions* motions, Modes* modes) {
   }
   const Condensed c = Condense(modes->mass, modes->damping, modes->stiffness, scale,
                                motions->prepared().model.no_inertia);
+  if (c.is_damped_off) {
+    modes->warnings.push_back(
+        "dampers act along motions without inertia, whose decay is not among the modes, nor what "
+        "it "
+        "does to the others; give the links that take part in them mass and inertia");
+  }
   if (c.M.rows() == 0) {
     modes->stability = JudgeBySprings(modes->stiffness);
     return;

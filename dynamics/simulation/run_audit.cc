@@ -16,7 +16,7 @@ void RunAudit::Begin() {
   pivot_ = equations_.motion().smallest_pivot();
   // Of forces: over a radian, or a characteristic length.
   const LoadWorkspace<double>& ws = equations_.motion().ws();
-  const double size = ((ws.tau.cwiseAbs() + ws.passive.cwiseAbs()).cwiseProduct(unit_)).maxCoeff();
+  const double size = unit_.dot(ws.tau.cwiseAbs() + ws.passive.cwiseAbs());
   largest_ = std::max({largest_, equations_.KineticEnergyHere(), size});
 }
 

@@ -28,17 +28,34 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Absolute tolerances of a state: coordinates and rates in radians and characteristic lengths;
-/// energies do not count.
-std::vector<double> AbsoluteTolerances(const KinematicTree& tree, double tolerance) {
+/// What energies are measured by: the weight and the inertia of all links over a characteristic
+/// length, and the springs of joints [J].
+double EnergyUnit(const KinematicTree& tree) {
+  double unit = 0;
+  for (const TreeNode& node : tree.nodes) {
+    unit += node.mass * tree.length * (tree.mechanism.gravity_W.norm() + tree.length);
+  }
+  for (const Joint& joint : tree.mechanism.joints) {
+    for (const Passive& passive : joint.passive) {
+      unit += (passive.stiffness + passive.viscous) * tree.length * tree.length;
+    }
+  }
+  return unit;
+}
+
+/// Absolute tolerances of a state: coordinates and rates in radians and characteristic lengths.
+/// Energies count where drives prescribe motions, which then take no steps of their own.
+std::vector<double> AbsoluteTolerances(const PreparedSimulation& prepared, double tolerance) {
   constexpr double kDoesNotCount = 1e30;
+  const KinematicTree& tree = prepared.model.tree;
   std::vector<double> tolerances(static_cast<size_t>(tree.nq + tree.nv), tolerance);
   for (const TreeNode& node : tree.nodes) {
     if (node.motion != NodeMotion::kPrismatic) continue;
     tolerances[static_cast<size_t>(node.q)] *= tree.length;
     tolerances[static_cast<size_t>(tree.nq + node.v)] *= tree.length;
   }
-  tolerances.insert(tolerances.end(), 2, kDoesNotCount);
+  const double unit = prepared.simulation.drives.empty() ? 0 : EnergyUnit(tree);
+  tolerances.insert(tolerances.end(), 2, unit > 0 ? tolerance * unit : kDoesNotCount);
   return tolerances;
 }
 
@@ -80,8 +97,7 @@ class Run {
       return equations_.Slopes(t, y, slopes);
     };
     problem_.relative_tolerance = options.relative_tolerance;
-    problem_.absolute_tolerances =
-        AbsoluteTolerances(equations_.tree(), options.absolute_tolerance);
+    problem_.absolute_tolerances = AbsoluteTolerances(prepared, options.absolute_tolerance);
     problem_.max_step = options.max_step;
     // Within a step one turn of a freedom is seen (SuddenEvents), not two.
     constexpr double kLooks = 200;
@@ -127,6 +143,7 @@ class Run {
     audit_.BeginAt(time_);
     const StartState start = FindStartState(prepared_, &equations_);
     result_.moved_rates = start.moved_rates;
+    if (!start.note.empty()) result_.notes.push_back(start.note);
     const KinematicTree& tree = equations_.tree();
     y_.head(tree.nq) = start.q;
     y_.segment(tree.nq, tree.nv) = start.v;

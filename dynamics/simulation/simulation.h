@@ -100,8 +100,9 @@ struct Simulation {
   std::vector<LimitRebound> rebounds;  ///< of freedoms with limits
 
   SimulationStart start = SimulationStart::kAsDrawn;  ///< as drawn, or at its equilibrium
-  /// Rates that are not given follow from these: the motion with the least kinetic energy. What the
-  /// loops do not allow is projected (SimulationResult::moved_rates).
+  /// Rates that are not given follow from these: the motion with the least kinetic energy. What
+  /// does not fit together by rounding is projected (SimulationResult::moved_rates); by more it is
+  /// refused.
   std::vector<StartRate> start_rates;
 
   std::vector<double> times;  ///< of the results [s], increasing, at least two; starts at the first

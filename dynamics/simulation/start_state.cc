@@ -1,8 +1,13 @@
 #include "vmech/dynamics/simulation/start_state.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "vmech/base/linear_algebra/linear_algebra.h"
 #include "vmech/mechanisms/freedoms.h"
@@ -54,18 +59,48 @@ VectorXd LeastEnergy(const MatrixXd& inertia, const GivenRates& given) {
   return factors.matrixU().solve(x);
 }
 
-std::vector<MovedRate> FindMoved(const PreparedSimulation& prepared,
-                                 const LoadWorkspace<double>& ws) {
-  constexpr double kMoved = 1e-9;
-  std::vector<MovedRate> moved;
+std::string RateInWords(const PreparedSimulation& prepared, const FreedomId& at, double rate) {
+  const DisplayUnits& units = prepared.simulation.units;
+  const bool shift = IsShift(prepared.model.tree.mechanism, at);
+  return fmt::format("{:.6g} {}/s", rate / (shift ? units.metres : units.radians),
+                     shift ? units.length : units.angle);
+}
+
+std::string Describe(const PreparedSimulation& prepared, const std::vector<MovedRate>& moved) {
+  std::string text;
+  for (const MovedRate& rate : moved) {
+    const Joint& joint = prepared.model.tree.mechanism.joints[rate.at.joint];
+    text += fmt::format("{}'{}' is given {} and has {}", text.empty() ? "" : ", ",
+                        NameOfFreedom(joint, rate.at.freedom),
+                        RateInWords(prepared, rate.at, rate.from),
+                        RateInWords(prepared, rate.at, rate.to));
+  }
+  return text;
+}
+
+/// As rounded figures do; what is moved by more contradicts the others, drives or the loops.
+void FindMoved(const PreparedSimulation& prepared, const LoadWorkspace<double>& ws,
+               StartState* start) {
+  constexpr double kMoved = 1e-9, kRounded = 1e-3;
+  double largest = 0, furthest = 0;
   for (const StartRate& given : prepared.simulation.start_rates) {
     const double rate = ws.loads[given.at.joint].rate[given.at.freedom];
     const double unit =
         IsShift(prepared.model.tree.mechanism, given.at) ? prepared.model.tree.length : 1;
+    largest = std::max(largest, std::abs(given.rate) / unit);
     if (std::abs(rate - given.rate) <= kMoved * std::max(unit, std::abs(given.rate))) continue;
-    moved.push_back({given.at, given.rate, rate});
+    furthest = std::max(furthest, std::abs(rate - given.rate) / unit);
+    start->moved_rates.push_back({given.at, given.rate, rate});
   }
-  return moved;
+  if (start->moved_rates.empty()) return;
+  const std::string text = Describe(prepared, start->moved_rates);
+  if (furthest > kRounded * largest) {
+    throw std::invalid_argument(
+        "the rates at the start contradict each other, the drives or the loops: in the nearest "
+        "motion " +
+        text + "; give rates that fit together, or fewer of them");
+  }
+  start->note = "to fit together the rates at the start are moved: " + text;
 }
 
 }  // namespace
@@ -73,7 +108,7 @@ std::vector<MovedRate> FindMoved(const PreparedSimulation& prepared,
 StartState FindStartState(const PreparedSimulation& prepared, EquationsOfMotion* equations) {
   const KinematicTree& tree = prepared.model.tree;
   const double time = prepared.simulation.times.front();
-  StartState start{prepared.q, VectorXd::Zero(tree.nv), {}};
+  StartState start{prepared.q, VectorXd::Zero(tree.nv), {}, {}};
   equations->Close(time, start.q.data());
   ConstrainedMotion& motion = equations->motion();
   if (!prepared.simulation.start_rates.empty() && motion.freedoms() > 0) {
@@ -82,7 +117,7 @@ StartState FindStartState(const PreparedSimulation& prepared, EquationsOfMotion*
   }
   equations->Place(time, start.q.data(), start.v.data());
   start.v = motion.ws().v;
-  start.moved_rates = FindMoved(prepared, motion.ws());
+  FindMoved(prepared, motion.ws(), &start);
   return start;
 }
 

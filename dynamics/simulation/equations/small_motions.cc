@@ -101,8 +101,16 @@ MatrixXd SmallMotions::Stiffness() {
   });
 }
 
+/// Rates as they are: those of motions without inertia are damped too.
 MatrixXd SmallMotions::Damping() {
-  return -Derivative([&](const VectorXd& rates) { return Force(q_, rates); });
+  const VectorXd none = VectorXd::Zero(tree().nv);
+  return -Derivative([&](const VectorXd& rates) -> VectorXd {
+    equations_.motion().SetPose(q_.data());
+    const VectorXd v = equations_.motion().N().rightCols(freedoms()) * rates;
+    equations_.TakeState(time_, q_.data(), v.data(), none.data());
+    const ConstrainedMotion& motion = equations_.motion();
+    return motion.N().rightCols(freedoms()).transpose() * (motion.ws().passive - motion.ws().tau);
+  });
 }
 
 MatrixXd SmallMotions::Inertia() {

@@ -112,5 +112,19 @@ TEST(FindEquilibrium, SaysWhereThereIsNone) {
   EXPECT_NE(equilibrium.message.find("no equilibrium"), std::string::npos);
 }
 
+TEST(FindModes, DampersMakeAMotionDieAway) {
+  Simulation simulation;
+  simulation.mechanism = Pendulum();
+  simulation.mechanism.joints[0].start = {kDown};
+  simulation.mechanism.joints[0].start_given = true;
+  simulation.mechanism.joints[0].passive = {{0, 0, 0.5, 0}};
+  simulation.times = {0, 1};
+  const Modes modes = FindModes(simulation);
+  ASSERT_EQ(modes.modes.size(), 1U);
+  EXPECT_EQ(modes.stability, Stability::kStable);
+  EXPECT_NEAR(modes.modes[0].damping_ratio, 0.5 / (2 * std::sqrt(kGravity)), 1e-9);
+  EXPECT_NEAR(modes.modes[0].eigenvalue.real(), -0.25, 1e-9);
+}
+
 }  // namespace
 }  // namespace vmech

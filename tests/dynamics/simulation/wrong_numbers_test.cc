@@ -2,12 +2,14 @@
 
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "simulated.h"
 #include "support/windows.h"
+#include "vmech/dynamics/simulation/modes.h"
 #include "vmech/dynamics/simulation/run_audit.h"
 
 namespace vmech {
@@ -106,6 +108,21 @@ TEST(WithoutInertia, WhatHoldsALinkWithoutMassBearsItsSprings) {
       1e-9);
 }
 
+// Springs in a row, with nothing between them; a damper there has a decay of its own.
+TEST(WithoutInertia, SpringsGiveWayAtOnceInModesAndDampersAreToldOf) {
+  Simulation simulation = SprungArm();
+  simulation.mechanism.joints[0].passive[0].stiffness = 7;
+  simulation.mechanism.joints[1].passive[0].stiffness = 3;
+  const Modes modes = FindModes(simulation);
+  ASSERT_EQ(modes.modes.size(), 1U);
+  EXPECT_NEAR(2 * std::numbers::pi * modes.modes[0].frequency, std::sqrt(7. * 3 / (7 + 3)), 1e-9);
+  EXPECT_TRUE(modes.warnings.empty());
+  simulation.mechanism.joints[0].passive[0].viscous = 0.1;
+  const Modes damped = FindModes(simulation);
+  ASSERT_EQ(damped.warnings.size(), 1U);
+  EXPECT_NE(damped.warnings[0].find("without inertia"), std::string::npos);
+}
+
 /// The same a hundred thousand lengths away: inertias are those of the body, wherever it is.
 TEST(Simulate, MovesFarAwayAsItDoesNearBy) {
   Simulation simulation = CarriedBody();
@@ -122,6 +139,22 @@ TEST(Simulate, MovesFarAwayAsItDoesNearBy) {
     EXPECT_LT(moved.tail(moved.size() - 2).cwiseAbs().maxCoeff(), 1e-6) << i;
     EXPECT_NEAR(there.energies[i].weight, here.energies[i].weight, 1e-6);
     EXPECT_NEAR(there.energies[i].error, 0, 1e-6);
+  }
+}
+
+// Nothing but the energies depends on the steps where drives prescribe all motion.
+TEST(Simulate, KnowsWhatDrivesSupplyThatPrescribeAllMotion) {
+  Simulation simulation;
+  simulation.mechanism = Pendulum();
+  simulation.mechanism.joints[0].passive = {{0, 0, 2, 0}};
+  simulation.drives = {{0, 0, MotionLaw::Uniform(0, 3)}};
+  simulation.times = {0, 1, 2};
+  const SimulationResult result = Simulate(simulation, Tight(1e-10));
+  ASSERT_EQ(result.status, SimulationStatus::kFinished) << result.message;
+  for (size_t i = 0; i < 3; ++i) {
+    const double lost = 2 * 3 * 3 * result.times[i];
+    EXPECT_NEAR(result.energies[i].supplied, 9.81 * std::sin(3 * result.times[i]) + lost, 1e-7);
+    EXPECT_NEAR(result.energies[i].dissipated, lost, 1e-7);
   }
 }
 
@@ -171,6 +204,32 @@ TEST(RunAudit, FindsEnergyThatTheToleranceDoesNotExplain) {
     EXPECT_EQ(audit.DescribeImbalance(sample, 1'000'000), "");
     sample.error = sign * 0.6;  // J, whatever the steps and the tolerance
     EXPECT_NE(audit.DescribeImbalance(sample, 1'000'000'000), "");
+  }
+}
+
+TEST(StartRates, ThatContradictEachOtherAreRefused) {
+  Simulation simulation = LongWindow(0);
+  const FreedomId a0 = FreedomOf(simulation.mechanism, "a0");
+  const FreedomId a1 = FreedomOf(simulation.mechanism, "a1");
+  simulation.times = {0, 0.01};
+  simulation.start_rates = {{a0, 2}, {a1, 2}};  // as the parallelogram has them
+  EXPECT_TRUE(Simulate(simulation, Tight(1e-9)).moved_rates.empty());
+  simulation.start_rates = {{a0, 2}, {a1, 2.0004}};  // rounded
+  const SimulationResult rounded = Simulate(simulation, Tight(1e-9));
+  EXPECT_EQ(rounded.moved_rates.size(), 2U);
+  EXPECT_EQ(rounded.notes.size(), 1U);
+  for (const std::vector<StartRate>& rates :
+       {std::vector<StartRate>{{a0, 1}, {a1, 3}}, {{a0, 1}, {a0, 3}}}) {
+    simulation.start_rates = rates;
+    try {
+      Simulate(simulation, Tight(1e-9));
+      ADD_FAILURE();
+    } catch (const std::invalid_argument& refused) {
+      const std::string what = refused.what();
+      for (const char* part : {"'a0' is given 1 rad/s", "is given 3 rad/s", "and has 2 rad/s"}) {
+        EXPECT_NE(what.find(part), std::string::npos) << what;
+      }
+    }
   }
 }
 
