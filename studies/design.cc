@@ -318,7 +318,9 @@ DesignResult OptimiseDesign(const StudyFile& file, const StudyOutcome& outcome,
   result.best = program.At(best.x);
   StateFirstPose(file, &result.best);
   result.feasible = best.feasible;
-  result.optimality = best.optimality;
+  constexpr double kNothing = 1e-6;  // of the objective of the search, which is 1 at first
+  const double f = std::abs(best.f), left = best.optimality * (f > 0 ? f : 1);
+  result.optimality = left / std::max(f, kNothing);
   // A multiplier is by how much the objective of the search falls. Its own slope is nothing where a
   // root mean square is zero: there is nothing to gain.
   const double slope = std::abs(program.SlopeInSearch(result.after[0]));

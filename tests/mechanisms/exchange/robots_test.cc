@@ -45,7 +45,7 @@ const Joint& JointOf(const Mechanism& mechanism, const std::string& name) {
 
 // An axis has a direction alone; the squares of these lengths vanish.
 TEST(UrdfRobots, TurnAboutAxesOfAnyLength) {
-  for (const std::string& axis : {"3e-160 0 4e-160", "3e-200 0 4e-200", "3e20 0 4e20"}) {
+  for (const std::string axis : {"3e-160 0 4e-160", "3e-200 0 4e-200", "3e20 0 4e20"}) {
     const Mechanism mechanism =
         ReadText(
             "<robot name='r'><link name='a'/><link name='b'><inertial><mass value='1'/>"
