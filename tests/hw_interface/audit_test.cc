@@ -206,8 +206,9 @@ void FindEveryNumberThatWasTamperedWith(const Recording& whole, size_t begin_tic
                                   name.starts_with("hand_p") || name.starts_with("R_HK") ||
                                   name.starts_with("dynamic") || name.starts_with("wanted") ||
                                   name.starts_with("sent") || name == "stored_energy";
-    // (w, 0, 0, 0) is the same turn for every w.
-    if (of_the_mechanism && !name.ends_with("_w")) {
+    // (w, 0, 0, 0) is the same turn for every w; a channel of the tick only says that w_d was
+    // bounded.
+    if (of_the_mechanism && !name.ends_with("_w") && name != "dynamic_force") {
       const double value = std::stod(row.substr(begin, end - begin));
       const double size = name.starts_with("joint") || name.starts_with("dynamic") ? 10 : 0.01;
       std::string other = row;
