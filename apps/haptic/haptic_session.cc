@@ -27,6 +27,7 @@
 #include "vmech/hw_interface/rendering/hand_motion.h"
 #include "vmech/hw_interface/rendering/paper_choice.h"
 #include "vmech/hw_interface/rendering/registration.h"
+#include "vmech/kinematics/tree/grasp_rows.h"
 #include "vmech/mechanisms/files/document.h"
 #include "vmech/mechanisms/files/reader.h"
 #include "vmech/studies/study_reader.h"
@@ -215,13 +216,10 @@ Rendering MakePaper(const RenderingRequest& request, const KinematicTree& tree,
   report += fmt::format("; weight at the hand {:.3g} N\n", choice.weight.head<3>().norm());
   report += ScaleReport(options.scale, request.scale);
   SessionPromise promise{true, true, options.scale, 1, {}};
-  promise.coupling.stiffness = options.law.stiffness / options.scale;
-  promise.coupling.damping = options.law.damping / options.scale;
+  const GraspKind kind = tree.mechanism.grasps[grasp].kind;
+  promise.coupling.stiffness = RowsThatCount(options.law.stiffness / options.scale, kind);
+  promise.coupling.damping = RowsThatCount(options.law.damping / options.scale, kind);
   promise.roll_off = options.LagOfInertia();
-  if (tree.mechanism.grasps[grasp].kind == GraspKind::kPoint) {
-    promise.coupling.stiffness.tail<3>().setZero();
-    promise.coupling.damping.tail<3>().setZero();
-  }
   hand.safety = choice.safety;
   hand.observer = choice.observer;
   hand.promise = promise;

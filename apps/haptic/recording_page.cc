@@ -119,18 +119,19 @@ class PageRows {
     const auto energy = [this](const char* name, double EnergyBalance::*part) {
       return SeriesOf(name, [part](const PageRow& row) { return row.energy.*part; });
     };
-    return {
-        {"energy",
-         "J",
-         {energy("work of the hand", &EnergyBalance::hand),
-          energy("motion", &EnergyBalance::kinetic), energy("height", &EnergyBalance::weight),
-          energy("joints", &EnergyBalance::joints), energy("lost in steps", &EnergyBalance::lost)}},
-        {"loops closed to",
-         "of its length",
-         {SeriesOf("largest error", [](const PageRow& row) { return row.closure; })}},
-        {"work of constraints along free motions",
-         "J",
-         {energy("work", &EnergyBalance::constraint)}}};
+    return {{"energy",
+             "J",
+             {energy("work of the hand", &EnergyBalance::hand),
+              energy("motion", &EnergyBalance::kinetic), energy("height", &EnergyBalance::weight),
+              energy("joints", &EnergyBalance::joints), energy("taken", &EnergyBalance::taken),
+              energy("withheld", &EnergyBalance::withheld),
+              energy("not traced", &EnergyBalance::untraced)}},
+            {"loops closed to",
+             "of its length",
+             {SeriesOf("largest error", [](const PageRow& row) { return row.closure; })}},
+            {"work of constraints along free motions",
+             "J",
+             {energy("work", &EnergyBalance::constraint)}}};
   }
 
   const RecordedTree& held_;

@@ -12,6 +12,7 @@
 #include "vmech/base/screw_algebra.h"
 #include "vmech/dynamics/loads/pose/idle_freedoms.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
+#include "vmech/kinematics/tree/grasp_rows.h"
 #include "vmech/kinematics/tree/validity.h"
 
 namespace vmech {
@@ -21,13 +22,11 @@ namespace {
 constexpr double kLoopWeight = 1e5;
 /// Of the trace: holds what neither hand nor loops move, at a dead centre.
 constexpr double kDamping = 1e-11;
-constexpr double kHeld = 1e-8;  // what neither moves anywhere
+constexpr double kHeld = 1e-8;        // what neither moves anywhere and has no inertia
+constexpr double kReleased = 1e-9;    // what has some: its motion is taken out again
+constexpr double kTakesPart = 0.1;    // of the largest
+constexpr double kNoInertia = 1e-10;  // of the largest
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-Vector6d RowsThatCount(Vector6d K, GraspKind kind) {
-  if (kind == GraspKind::kPoint) K.tail<3>().setZero();
-  return K;
-}
 
 /// Stiffness of lengths [N/m]: of the positions, or of the rotations over L^2.
 double MeanStiffness(const Vector6d& K, double length) {
@@ -76,24 +75,72 @@ void HandDynamics::HoldIdleFreedoms() {
   MatrixXd A(6 + pose_.C().rows(), tree_.nv);
   const Vector6d root = root_K_ / std::sqrt(MeanStiffness(K_, tree_.length));
   A << root.asDiagonal() * pose_.J() / tree_.length, pose_.C();
-  constexpr double kMoved = 1e-6, kTakesPart = 0.1;
+  constexpr double kMoved = 1e-6;
   const NullSpace free = FindNullSpace(A, kMoved);
   TreeWorkspace<double> ws(tree_);
   ForwardKinematics(tree_, q_.data(), &ws);
   for (Eigen::Index k = 0; k < free.basis.cols(); ++k) {
     const VectorXd v = free.basis.col(k);
     Eigen::Index most = 0;
-    const double largest = v.cwiseAbs().maxCoeff(&most);
+    v.cwiseAbs().maxCoeff(&most);
     if (ShiftOfCentres(tree_, v, &ws) > tree_.mechanism.tolerance) {
       throw std::invalid_argument(fmt::format(
           "the grasp does not move '{}': {} of the mechanism's freedoms stay loose in this hand. "
           "Hold another link, or hold it rigidly instead of at a point",
           NameOfVelocity(tree_, static_cast<int>(most)), free.basis.cols()));
     }
-    for (int i = 0; i < tree_.nv; ++i) {
-      if (std::abs(v[i]) > kTakesPart * largest) damping_[i] = kHeld;
-    }
+    Damp(v, kHeld);
   }
+  KeepThoseWithInertia(free.basis);
+}
+
+/// What takes part in a motion.
+void HandDynamics::Damp(const VectorXd& motion, double damping) {
+  const double largest = motion.cwiseAbs().maxCoeff();
+  for (int i = 0; i < tree_.nv; ++i) {
+    if (std::abs(motion[i]) > kTakesPart * largest) damping_[i] = damping;
+  }
+}
+
+/// The others have neither momentum nor force.
+void HandDynamics::KeepThoseWithInertia(const MatrixXd& idle) {
+  if (idle.cols() == 0) return;
+  MatrixXd M = MatrixXd::Zero(tree_.nv, tree_.nv);
+  pose_.ComputeMassMatrix(&M);
+  const MatrixXd without =
+      FindKernel(idle.transpose() * M * idle, kNoInertia * M.diagonal().maxCoeff());
+  const MatrixXd with =
+      without.cols() == 0 ? idle : idle * FindNullSpace(without.transpose(), 0.5).basis;
+  for (Eigen::Index k = 0; k < with.cols(); ++k) {
+    idle_.push_back({with.col(k), VectorXd::Zero(tree_.nv)});
+    Damp(with.col(k), kReleased);
+  }
+}
+
+/// From those of the last pose: (A + w C'C + D) z+ = D z, D the damping, leaves what is idle here
+/// as it is, and of all else next to nothing.
+void HandDynamics::FollowIdleMotions() noexcept {
+  const MatrixXd& A = curved_ ? curved_A_ : A_;
+  for (size_t k = 0; k < idle_.size(); ++k) {
+    auto& [z, Mz] = idle_[k];
+    right_ = damping_.cwiseProduct(z);
+    system_.Solve(A, pose_.C(), right_, zero_, &z);
+    for (size_t i = 0; i < k; ++i) z -= idle_[i].Mz.dot(z) * idle_[i].z;
+    pose_.ComputeMomenta(z, &Mz);
+    const double size = 1 / std::sqrt(z.dot(Mz));
+    z *= size;
+    Mz *= size;
+  }
+}
+
+/// Z'tau = 0 by accelerations along Z.
+void HandDynamics::ReleaseIdleMotions() noexcept {
+  for (const auto& [z, Mz] : idle_) {
+    const double along = z.dot(tau_);
+    vdot_ -= along * z;
+    tau_ -= along * Mz;
+  }
+  pose_.SetAccelerations(vdot_);
 }
 
 bool HandDynamics::Evaluate(const Vector6d& V_WG, const Vector6d& A_WG, double inertia) noexcept {
@@ -113,6 +160,8 @@ bool HandDynamics::FindVelocities(const Vector6d& V_WH, const MatrixXd* S,
   Vector6d V = V_WH;
   V.tail<3>() -= 0.5 * turn.cross(V_WH.tail<3>());
   SolveMotion(V, zero_, &v_);
+  if (!idle_.empty()) FollowIdleMotions();
+  for (const auto& [z, Mz] : idle_) v_ -= Mz.dot(v_) * z;
   return std::isfinite(v_.sum());
 }
 
@@ -135,6 +184,10 @@ bool HandDynamics::Evaluate(const VectorXd& v, const VectorXd& u, const VectorXd
   pose_.SetAccelerations(udot);
   pose_.ComputeForces(&tau_);
   passive_.AddForces(q_, v, &tau_);
+  if (!idle_.empty()) {
+    vdot_ = udot;
+    ReleaseIdleMotions();
+  }
   if (rule_ == WrenchRule::kPaper) {
     FindPaperWrench();
     return w_d_.allFinite();

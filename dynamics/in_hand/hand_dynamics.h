@@ -43,7 +43,8 @@ class HandDynamics {
   /// Keeps references to the tree. `stiffness`: K, diagonal; rows that a point grasp ignores do not
   /// count. `q`: a closed pose, at which is judged whether the grasp moves every freedom.
   /// Freedoms that it does not move and that shift no centre of gravity, such as the spin of a rod
-  /// between two spherical joints, stand still.
+  /// between two spherical joints, move as they would from rest: with Z their motions, Z'M v = 0
+  /// and Z'(M v' + h) = 0, so that no joint would have to carry what drives them.
   /// @throws std::invalid_argument if it leaves others loose, naming one; if no stiffness is above
   ///         zero; if a cut joint has springs or friction, or a joint has friction under load: they
   ///         are beyond this path.
@@ -93,6 +94,10 @@ class HandDynamics {
   void FindPaperWrench() noexcept;
   void SolveMotion(const Vector6d& b, const VectorXd& d, VectorXd* x) noexcept;
   void HoldIdleFreedoms();
+  void Damp(const VectorXd& motion, double damping);
+  void KeepThoseWithInertia(const MatrixXd& idle);
+  void FollowIdleMotions() noexcept;
+  void ReleaseIdleMotions() noexcept;
 
   const KinematicTree& tree_;
   WrenchRule rule_;
@@ -106,6 +111,11 @@ class HandDynamics {
   bool curved_ = false;                   // the factors are those of curved_A_
   Vector6d heaviest_ = Vector6d::Ones();  // direction of InertiaRatio
   VectorXd damping_;                      // [nv], of the trace of A
+  /// A motion z of Z, z'M z = 1, and its momenta M z.
+  struct IdleMotion {
+    VectorXd z, Mz;
+  };
+  std::vector<IdleMotion> idle_;  // of the idle freedoms that have inertia
   VectorXd q_, v_, felt_v_, vdot_, tau_, x_, right_, d_, zero_, mu_;
   std::vector<Screw> cut_;  // what the cut joints exert by eq. (14)
   std::vector<Wrenchd> joints_;

@@ -6,6 +6,7 @@
 #include "vmech/base/check_range.h"
 #include "vmech/base/rotation_error.h"
 #include "vmech/base/screw_algebra.h"
+#include "vmech/kinematics/tree/grasp_rows.h"
 
 namespace vmech {
 namespace {
@@ -18,10 +19,8 @@ HandCoupling Checked(HandCoupling coupling, GraspKind kind) {
   }
   CheckRange("HandCoupling", "max_force", coupling.max_force, 1e-9, kNoLimit);
   CheckRange("HandCoupling", "max_moment", coupling.max_moment, 1e-9, kNoLimit);
-  if (kind == GraspKind::kPoint) {
-    coupling.stiffness.tail<3>().setZero();
-    coupling.damping.tail<3>().setZero();
-  }
+  coupling.stiffness = RowsThatCount(coupling.stiffness, kind);
+  coupling.damping = RowsThatCount(coupling.damping, kind);
   return coupling;
 }
 

@@ -3,104 +3,35 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string_view>
-#include <utility>
 
 #include "vmech/base/rotation_error.h"
 #include "vmech/base/screw_algebra.h"
-#include "vmech/dynamics/in_hand/passive_joints.h"
 #include "vmech/dynamics/in_hand/virtual_coupling.h"
-#include "vmech/dynamics/reactions/joint_wrenches.h"
-#include "vmech/dynamics/rigid_body/newton_euler.h"
+#include "vmech/hw_interface/audit/energy_trace.h"
+#include "vmech/hw_interface/audit/felt_motion.h"
+#include "vmech/hw_interface/audit/link_balance.h"
 #include "vmech/hw_interface/audit/promise.h"
 #include "vmech/hw_interface/audit/recorded_tree.h"
-#include "vmech/kinematics/loops/loops.h"
+#include "vmech/hw_interface/rendering/contact_law.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
-#include "vmech/mechanisms/freedoms.h"
+#include "vmech/kinematics/tree/grasp_rows.h"
 
 namespace vmech {
 namespace {
 
 constexpr double kExact = 1e-9;       // m, rad and shares: what rounding and printing leave
 constexpr double kNewton = 0.05;      // of the largest force: a step of the period is no limit
+constexpr double kBalance = 1e-8;     // of the largest force, where accelerations are known
 constexpr double kConstraint = 1e-6;  // of the largest wrench
-constexpr double kEnergyGain = 0.01;  // of the hand's work
-
-/// The mechanism in one tick.
-struct MechanismState {
-  explicit MechanismState(const KinematicTree& tree)
-      : ws(tree), inertias(tree), joints(tree.mechanism.joints.size()) {
-    SetGravity(tree.mechanism.gravity_W, &ws);
-  }
-
-  /// `v`: the velocity of its inertia.
-  void Set(const KinematicTree& tree, const VectorXd& q, const VectorXd& v) {
-    ForwardKinematics(tree, q.data(), &ws);
-    ForwardVelocities(tree, v.data(), &ws);
-    LoopErrors(tree, &ws);
-    BodyInertias(tree, ws, &inertias);
-    JointFrames(tree, ws, &joints);
-    closure = LargestLoopError(tree, ws);
-    kinetic = KineticEnergy(tree, inertias, ws);
-    weight = WeightEnergy(tree.mechanism.gravity_W, inertias);
-    momenta.clear();
-    for (size_t i = 0; i < ws.nodes.size(); ++i) {
-      momenta.push_back(i == 0 ? Screw{} : inertias.bodies[i] * ws.nodes[i].V);
-    }
-  }
-
-  TreeWorkspace<double> ws;
-  TreeInertias<double> inertias;
-  std::vector<JointState<double>> joints;
-  std::vector<Screw> momenta;  // of the nodes, about the reference point; node i at i + 1
-  double closure = 0, kinetic = 0, weight = 0;
-};
-
-class Judgement {
- public:
-  Judgement(std::string what, double bound, std::string unit)
-      : finding_{std::move(what), 0, bound, std::move(unit), 0} {}
-  /// A number that is none is the worst of all.
-  void Add(double value, std::uint64_t tick) {
-    if (value <= finding_.worst) return;
-    if (std::isnan(finding_.worst)) return;
-    finding_.worst = value;
-    finding_.tick = tick;
-  }
-  const AuditFinding& finding() const { return finding_; }
-
- private:
-  AuditFinding finding_;
-};
-
-/// -1: the recording has none of this name.
-int ChannelOf(const RecordingHeader& header, std::string_view name) {
-  const auto found = std::find(header.channels.begin(), header.channels.end(), name);
-  return found == header.channels.end() ? -1 : static_cast<int>(found - header.channels.begin());
-}
+constexpr double kLeastWork = 1e-6;   // [J], of which shares are told
 
 double Distance(const Posed& A, const Posed& B) {
   return HandError(A, B).cwiseAbs().maxCoeff();
 }
 
-/// Forces, and moments over a length.
-double Size(const Screw& W, double length) {
-  return std::max(Length(W.linear), Length(W.angular) / length);
-}
-
-bool HasLimits(const Joint& joint) {
-  const auto finite = [](double x) { return std::isfinite(x); };
-  return std::any_of(joint.lower.begin(), joint.lower.end(), finite) ||
-         std::any_of(joint.upper.begin(), joint.upper.end(), finite);
-}
-
-/// Nothing acts along its freedoms but what the constraints do.
-bool IsBare(const Joint& joint) {
-  return std::none_of(joint.passive.begin(), joint.passive.end(),
-                      [](const Passive& passive) { return HasPassive(passive); }) &&
-         !HasLimits(joint);
+double Channel(const TickRecord& tick, int index) {
+  return tick.channels[static_cast<size_t>(index)];
 }
 
 }  // namespace
@@ -109,23 +40,19 @@ struct RecordingAudit::Parts {
   explicit Parts(const RecordingHeader& header)
       : held(header),
         promise(PromiseOf(header)),
+        as_printed(header.Note("wrench") == "paper"),
         period(header.period),
         passive(held.tree),
+        felt(header),
+        own(header),
         before(held.tree),
         now(held.tree),
-        net(held.tree.nodes.size() + 1),
-        loops("loops of the mechanism, closed to", held.tree.mechanism.tolerance, "-"),
-        grasp("grasp frame from the coordinates, off by", kExact, "m, rad"),
-        hand("hand in the world from the sample, off by", kExact, "m, rad"),
-        stored("stored energy from q and v, off by", kExact, "-"),
-        wanted("wrench from the mechanism to the safety filter, off by", kExact, "-"),
-        sent("wrench from the filter to the device, off by", kExact, "-"),
-        free("constraints along free motions, share of the largest wrench", kConstraint, "-"),
-        newton("force balance of every link, share of the largest", kNewton, "-"),
-        u(VectorXd::Zero(held.tree.nv)),
-        felt_v(u),
-        share_channel(ChannelOf(header, "inertia_share")),
-        losses_channel(ChannelOf(header, "remembered_losses")) {
+        balance(held.tree, period),
+        trace(held.tree, period, promise.paper),
+        unpaid_channel(header.ChannelOf("unpaid_energy")),
+        losses_channel(header.ChannelOf("remembered_losses")) {
+    loops.bound = held.tree.mechanism.tolerance;
+    newton.bound = promise.paper ? kBalance : kNewton;
     for (int i = 0; i < header.hands(); ++i) {
       hands.push_back({held.grasps[i],
                        VirtualCoupling(PromiseOf(header, i).coupling, held.grasps[i].kind, period),
@@ -146,34 +73,41 @@ struct RecordingAudit::Parts {
   };
 
   void Take(const TickRecord& tick);
-  const VectorXd& VelocityOfInertia(const TickRecord& tick);
+  void SetPose(const TickRecord& tick);
   void JudgePose(const TickRecord& tick);
   void JudgeStoredEnergy(const TickRecord& tick);
+  double StoredOfCoupling(const TickRecord& tick, bool* all_hold);
+  double StoredOfConstraint(const TickRecord& tick) const;
   void JudgeWrenches(const TickRecord& tick);
-  void JudgeJoints(const TickRecord& tick);
-  double AlongCutFreedoms(int joint, const Wrenchd& w) const;
-  void JudgeLinks(const TickRecord& tick, const MechanismState& at);
-  double WorkOf(const Hand& hand, const HandPicture& picture) const;
+  void JudgeLinks(const TickRecord& tick);
   void Balance(const TickRecord& tick);
+  bool links_are_judged() const { return !held.regrasps && (!promise.paper || felt.knows_rate()); }
 
   RecordedTree held;
   SessionPromise promise;
+  bool as_printed;  // the wrenches of paper eq. (14)
   double period;
   std::vector<Hand> hands;
   PassiveJoints passive;
-  MechanismState before, now;
-  std::vector<Screw> net;  // on every node; node i at i + 1
-  Judgement loops, grasp, hand, stored, wanted, sent, free, newton;
-  EnergyBalance energy;
-  // In the paper's way:
-  VectorXd u, felt_v;  // behind the roll-off; of the inertia that is felt
-  MasterState last_sample;
-  int share_channel, losses_channel;
-  double joint_work = 0;  // of this tick [J]
-  double first_kinetic = 0, first_weight = 0;
-  double largest_force = 0;
-  std::uint64_t ticks = 0;
-  bool started = false, follows = false;
+  FeltMotion felt;
+  OwnWrench own;
+  AuditedPose before, now;
+  LinkBalance balance;
+  EnergyTrace trace;
+  MatrixXd idle;  // motions that nothing drives, where there are any
+  AuditFinding loops{"loops of the mechanism, closed to", 0, 0, "-", 0};
+  AuditFinding grasp{"grasp frame from the coordinates, off by", 0, kExact, "m, rad", 0};
+  AuditFinding hand{"hand in the world from the sample, off by", 0, kExact, "m, rad", 0};
+  AuditFinding stored{"stored energy from q and v, off by", 0, kExact, "-", 0};
+  AuditFinding wanted{"wrench from the mechanism to the safety filter, off by", 0, kExact, "-", 0};
+  AuditFinding sent{"wrench from the filter to the device, off by", 0, kExact, "-", 0};
+  AuditFinding free{"constraints along free motions, share of the largest wrench", 0, kConstraint,
+                    "-", 0};
+  AuditFinding newton{"force balance of every link, share of the largest", 0, 0, "-", 0};
+  int unpaid_channel, losses_channel;
+  bool own_before = false;  // OwnWrench of the tick before
+  std::uint64_t ticks = 0, bounded_ticks = 0;
+  bool started = false;
 };
 
 /// Before the first sample there is no mechanism in hand.
@@ -193,16 +127,15 @@ void RecordingAudit::Parts::Take(const TickRecord& tick) {
     hands[i].late = hands[i].late || (started && holds && !hands[i].held);
     hands[i].held = hands[i].held || holds;
   }
-  now.Set(held.tree, tick.picture.q, promise.paper ? VelocityOfInertia(tick) : tick.picture.v);
+  SetPose(tick);
   JudgePose(tick);
   JudgeStoredEnergy(tick);
   JudgeWrenches(tick);
   if (started) {
-    JudgeJoints(tick);
+    JudgeLinks(tick);
     Balance(tick);
   } else {
-    first_kinetic = now.kinetic;
-    first_weight = now.weight;
+    trace.Begin(now);
   }
   started = true;
   for (size_t i = 0; i < hands.size(); ++i) {
@@ -211,21 +144,19 @@ void RecordingAudit::Parts::Take(const TickRecord& tick) {
     hands[i].X_WH_before = picture.X_WH;
     hands[i].dynamic_before = picture.dynamic;
   }
+  own_before = own.IsOfNearestPose(tick, kExact);
   std::swap(before, now);
   ++ticks;
 }
 
-/// s^1/2 u, with the share s that was felt and u behind the roll-off, as MechanismTick finds them.
-const VectorXd& RecordingAudit::Parts::VelocityOfInertia(const TickRecord& tick) {
-  if (tick.io != IoStatus::kOk) return felt_v;
-  const double periods = started ? PeriodsBetween(last_sample, tick.state, period) : 1;
-  const double elapsed = period * std::max(1.0, std::round(periods));
-  last_sample = tick.state;
-  u += elapsed / (promise.roll_off + elapsed) * (tick.picture.v - u);
-  const double share =
-      share_channel < 0 ? promise.inertia : tick.channels[static_cast<size_t>(share_channel)];
-  felt_v = std::sqrt(share) * u;
-  return felt_v;
+/// In the paper's way with the motion of the inertia that is felt.
+void RecordingAudit::Parts::SetPose(const TickRecord& tick) {
+  const TickPicture& picture = tick.picture;
+  if (!promise.paper) return now.Set(held.tree, picture.q, picture.v);
+  felt.Take(tick);
+  now.Set(held.tree, picture.q, felt.velocity());
+  if (!started || idle.cols() > 0) idle = IdleMotionsOf(held.tree, held.grasp, picture.q);
+  now.Accelerate(held.tree, passive, picture.v, felt.rate(), idle);
 }
 
 void RecordingAudit::Parts::JudgePose(const TickRecord& tick) {
@@ -244,30 +175,45 @@ void RecordingAudit::Parts::JudgePose(const TickRecord& tick) {
   }
 }
 
+void RecordingAudit::Parts::JudgeStoredEnergy(const TickRecord& tick) {
+  if (!promise.known || held.regrasps || (promise.paper && unpaid_channel < 0)) return;
+  double told = 0;
+  for (size_t i = 0; i < hands.size(); ++i) told += tick.of_hand(static_cast<int>(i)).stored_energy;
+  bool all_hold = true;
+  const double now_stored =
+      promise.paper ? StoredOfConstraint(tick) : StoredOfCoupling(tick, &all_hold);
+  const double size = std::abs(now.kinetic) + std::abs(now.weight) + std::abs(now_stored);
+  if (all_hold) stored.Add(std::abs(now_stored - told) / std::max(size, kLeastWork), ticks);
+}
+
 /// That of the virtual coupling, whose spring remembers where it slips, with what steps have lost
 /// and may give back; of several hands the sum of what they have stored, as long as none has let
 /// go.
-void RecordingAudit::Parts::JudgeStoredEnergy(const TickRecord& tick) {
-  if (!promise.known || promise.paper || held.regrasps) return;
-  double own = now.kinetic + now.weight + passive.Energy(tick.picture.q), told = 0;
-  bool all_hold = true;
+double RecordingAudit::Parts::StoredOfCoupling(const TickRecord& tick, bool* all_hold) {
+  double sum = now.kinetic + now.weight + passive.Energy(now.q);
   for (size_t i = 0; i < hands.size(); ++i) {
     Hand& hand = hands[i];
     const HandPicture& picture = tick.picture.hand(static_cast<int>(i));
-    const HandRecord& record = tick.of_hand(static_cast<int>(i));
-    told += record.stored_energy;
-    all_hold = all_hold && !hand.let_go && !hand.late;
+    *all_hold = *all_hold && !hand.let_go && !hand.late;
     if (!picture.holds) continue;
     const MovingFrame hand_W{FrameOf(picture.X_WH), {}};
-    hand.coupling.Within(record.room.Times(1 / promise.scale));
+    hand.coupling.Within(tick.of_hand(static_cast<int>(i)).room.Times(1 / promise.scale));
     if (started) hand.coupling.Stretch(FrameOf(hand.X_WG_before), hand_W);
     hand.coupling.Stretch(FrameOf(picture.X_WG), hand_W);
-    own += hand.coupling.energy();
+    sum += hand.coupling.energy();
   }
-  own *= promise.scale;
-  if (losses_channel >= 0) own += tick.channels[static_cast<size_t>(losses_channel)];
-  const double size = std::abs(now.kinetic) + std::abs(now.weight) + std::abs(own);
-  if (all_hold) stored.Add(std::abs(own - told) / std::max(size, 1e-6), ticks);
+  sum *= promise.scale;
+  return losses_channel < 0 ? sum : sum + Channel(tick, losses_channel);
+}
+
+/// That of the paper's way: the share of inertia, weight, springs and the constraint, less what no
+/// hand has given and is not paid back yet.
+double RecordingAudit::Parts::StoredOfConstraint(const TickRecord& tick) const {
+  ContactLaw law;
+  law.stiffness = RowsThatCount(promise.scale * promise.coupling.stiffness, held.grasp.kind);
+  const Vector6d e1 = HandError(tick.picture.X_WG, tick.picture.X_WH);
+  return promise.scale * (now.kinetic + now.weight + passive.Energy(now.q)) + law.StoredEnergy(e1) -
+         Channel(tick, unpaid_channel);
 }
 
 void RecordingAudit::Parts::JudgeWrenches(const TickRecord& tick) {
@@ -287,106 +233,45 @@ void RecordingAudit::Parts::JudgeWrenches(const TickRecord& tick) {
   }
 }
 
-/// Along the freedoms of a cut joint, which the tree does not have.
-double RecordingAudit::Parts::AlongCutFreedoms(int j, const Wrenchd& w) const {
-  const Joint& joint = held.tree.mechanism.joints[j];
-  if (joint.type == JointType::kScrew) {
-    return std::abs(joint.pitch * w.force.z() + w.moment.z()) / held.tree.length;
-  }
-  if (joint.type == JointType::kUniversal) return 0;
-  double most = 0;
-  const std::array<bool, 6>& free_axes = FreedomsOfType(joint.type).free;
-  for (int i = 0; i < 3; ++i) {
-    if (free_axes[i]) most = std::max(most, std::abs(w.force[i]));
-    if (free_axes[3 + i]) most = std::max(most, std::abs(w.moment[i]) / held.tree.length);
-  }
-  return most;
-}
-
 /// The wrenches are those of the step that led here: in the paper's way at this pose, with the
 /// virtual coupling at that where the step began.
-void RecordingAudit::Parts::JudgeJoints(const TickRecord& tick) {
-  const KinematicTree& tree = held.tree;
-  const MechanismState& at = promise.paper ? now : before;
-  std::fill(net.begin(), net.end(), Screw{});
-  double most_along = 0;
-  joint_work = 0;
-  std::vector<Screw> wrenches(tick.picture.joints.size());
-  for (size_t j = 0; j < wrenches.size(); ++j) {
-    const Joint& joint = tree.mechanism.joints[j];
-    const Screw W = WrenchFrom(at.joints[j].F, tick.picture.joints[j]);
-    wrenches[j] = W;
-    largest_force = std::max(largest_force, Size(W, tree.length));
-    const JointPlacement& place = tree.placements[j];
-    net[place.second_node + 1] += W;
-    net[place.first_node + 1] -= W;
-    if (place.tree_node < 0) {
-      const double along = AlongCutFreedoms(static_cast<int>(j), tick.picture.joints[j]);
-      most_along = std::max(most_along, along);
-      energy.constraint += period * along;
-    }
-    (void)joint;
+void RecordingAudit::Parts::JudgeLinks(const TickRecord& tick) {
+  const TickPicture& picture = tick.picture;
+  balance.TakeJoints(promise.paper ? now : before, picture.joints, picture.v);
+  if (promise.paper && !own.IsOfNearestPose(tick, kExact)) {
+    ++bounded_ticks;
+  } else {
+    free.Add(balance.along(), ticks);
   }
-  for (const TreeNode& node : tree.nodes) {
-    if (node.v < 0) continue;
-    const double sign = node.reversed ? -1 : 1;
-    const bool bare = IsBare(tree.mechanism.joints[node.joint]);
-    for (int i = 0; i < VelocitiesOf(node.motion); ++i) {
-      const double along = sign * Power(wrenches[node.joint], at.ws.S[node.v + i]);
-      const double work = period * along * tick.picture.v[node.v + i];
-      joint_work += work;
-      if (!bare) continue;
-      const bool slides = node.motion == NodeMotion::kPrismatic;
-      most_along = std::max(most_along, std::abs(along) / (slides ? 1 : tree.length));
-      energy.constraint += std::abs(work);
-    }
-  }
-  free.Add(most_along / std::max(largest_force, 1e-3), ticks);
-  JudgeLinks(tick, at);
-}
-
-/// dh/dt = net wrench, for every link with mass.
-void RecordingAudit::Parts::JudgeLinks(const TickRecord& tick, const MechanismState& at) {
-  if (promise.paper || held.regrasps) return;
-  const KinematicTree& tree = held.tree;
+  if (!links_are_judged()) return;
+  if (promise.paper) return newton.Add(balance.OffAt(now, held.grasp.node), ticks);
   for (size_t i = 0; i < hands.size(); ++i) {
-    const Vector6d& w = tick.picture.hand(static_cast<int>(i)).dynamic;
-    const Vector3d p_Go = hands[i].X_WG_before.p - tree.reference;
-    net[hands[i].grasp.node + 1] +=
-        WrenchAt(Double4Of(p_Go), Double4Of(w.head<3>()), Double4Of(w.tail<3>()));
+    balance.TakeHand(hands[i].grasp.node, hands[i].X_WG_before.p,
+                     picture.hand(static_cast<int>(i)).dynamic);
   }
-  double most = 0;
-  for (size_t i = 0; i < tree.nodes.size(); ++i) {
-    const ScrewInertia& body = at.inertias.bodies[i + 1];
-    const Double4 g = Double4Of(tree.mechanism.gravity_W);
-    const Screw weight{body.mass * g, Cross(body.moment, g)};
-    const Screw rate = (1 / period) * (now.momenta[i + 1] - before.momenta[i + 1]);
-    most = std::max(most, Size(rate - net[i + 1] - weight, tree.length));
-    largest_force = std::max(largest_force, Size(weight, tree.length));
-  }
-  newton.Add(most / std::max(largest_force, 1e-3), ticks);
+  newton.Add(balance.OffInStep(before, now), ticks);
 }
 
-/// Of a hand on the mechanism since the last tick. The virtual coupling pulls at the grasp, in a
-/// step with the wrench of its end. In the paper's way w_d is felt at the hand beside the grasp,
-/// and its work there is what the mechanism gets: by the mean of w_d at both ends of the way.
-double RecordingAudit::Parts::WorkOf(const Hand& hand, const HandPicture& picture) const {
-  if (!promise.paper) return picture.dynamic.dot(HandError(hand.X_WG_before, picture.X_WG));
-  const Vector6d way = HandError(hand.X_WH_before, picture.X_WH);
-  return 0.5 * (hand.dynamic_before + picture.dynamic).dot(way);
-}
-
+/// The virtual coupling pulls at the grasp, in a step with the wrench of its end. In the paper's
+/// way w_d is felt at the hand beside the grasp, and its work there is what the mechanism gets: by
+/// the mean of w_d at both ends of the way.
 void RecordingAudit::Parts::Balance(const TickRecord& tick) {
+  TracedStep step;
   for (size_t i = 0; i < hands.size(); ++i) {
-    const double work = WorkOf(hands[i], tick.picture.hand(static_cast<int>(i)));
-    energy.hand += work;
-    energy.throughput += std::abs(work);
+    const HandPicture& picture = tick.picture.hand(static_cast<int>(i));
+    const double work = promise.paper
+                            ? 0.5 * (hands[i].dynamic_before + picture.dynamic)
+                                        .dot(HandError(hands[i].X_WH_before, picture.X_WH))
+                            : picture.dynamic.dot(HandError(hands[i].X_WG_before, picture.X_WG));
+    step.hand += work;
+    step.throughput += std::abs(work);
   }
-  energy.joints -= joint_work;
-  energy.kinetic = now.kinetic - first_kinetic;
-  energy.weight = now.weight - first_weight;
-  energy.lost = energy.hand - energy.kinetic - energy.weight - energy.joints;
-  energy.gained = std::max(energy.gained, -energy.lost);
+  step.joints = -balance.joint_work();
+  step.corrected = balance.corrected();
+  step.moved = balance.moved();
+  step.constraint = balance.constraint_work();
+  step.faithful = own_before && own.IsOfNearestPose(tick, kExact);
+  trace.Add(before, now, step);
 }
 
 RecordingAudit::RecordingAudit(const RecordingHeader& header)
@@ -403,7 +288,7 @@ bool RecordingAudit::started() const {
 }
 
 const EnergyBalance& RecordingAudit::energy() const {
-  return parts_->energy;
+  return parts_->trace.balance();
 }
 
 double RecordingAudit::closure() const {
@@ -414,60 +299,43 @@ AuditReport RecordingAudit::Report() const {
   const Parts& p = *parts_;
   AuditReport report;
   report.ticks = p.ticks;
-  report.energy = p.energy;
-  report.findings = {p.loops.finding(), p.hand.finding(), p.free.finding(), p.sent.finding()};
+  report.energy = p.trace.balance();
+  report.findings = {p.loops, p.hand, p.free, p.sent};
   if (p.held.regrasps) {
-    report.left_out = "grasp frame, stored energy and links: the hand takes hold anew";
+    report.left_out = "grasp frame, stored energy, links and energy: the hand takes hold anew";
     return report;
   }
-  report.findings.push_back(p.grasp.finding());
+  report.findings.push_back(p.grasp);
   if (p.promise.known) {
-    report.findings.push_back(p.wanted.finding());
+    report.findings.push_back(p.wanted);
   } else {
     report.left_out = "stored energy and wanted wrench: the recording does not say what was felt";
   }
-  if (p.promise.paper) {
+  if (p.promise.known && (!p.promise.paper || p.unpaid_channel >= 0)) {
+    report.findings.push_back(p.stored);
+  }
+  if (!p.links_are_judged()) {
     report.left_out =
-        "stored energy and links: in the paper's way the place of the hand moves the mechanism, no "
-        "force";
-  } else {
-    if (p.promise.known) report.findings.push_back(p.stored.finding());
-    report.findings.push_back(p.newton.finding());
+        "links and energy: accelerations come of an estimator whose state is not recorded";
+    return report;
   }
-  const double share = p.energy.gained / std::max(p.energy.throughput, 1e-6);
-  report.findings.push_back(
-      {"energy from nowhere, share of the hand's work", share, kEnergyGain, "-", p.ticks});
+  report.findings.push_back(p.newton);
+  if (p.as_printed) {
+    report.left_out = "energy: eq. (14) as printed leaves work to what closes the loops";
+    return report;
+  }
+  if (p.bounded_ticks > 0) {
+    report.left_out = fmt::format(
+        "constraints along free motions in {} ticks in which the pose was not the nearest to the "
+        "hand, or the hand's wrench kept within bounds",
+        p.bounded_ticks);
+  }
+  const EnergyBalance& energy = report.energy;
+  const double size = std::max(energy.throughput, kLeastWork);
+  report.findings.push_back({"energy that is not traced, share of the hand's work",
+                             energy.untraced_most / size, energy.untraced_bound / size, "-",
+                             p.ticks});
   return report;
-}
-
-bool AuditReport::sound() const {
-  return std::all_of(findings.begin(), findings.end(),
-                     [](const AuditFinding& finding) { return finding.sound(); });
-}
-
-std::string AuditReport::Text() const {
-  std::string text = fmt::format("audit of {} ticks\n", ticks);
-  for (const AuditFinding& f : findings) {
-    text += fmt::format("  {:<60} {:>9.2g} {:<6} at most {:g}{}\n", f.what, f.worst,
-                        f.unit == "-" ? "" : f.unit, f.bound,
-                        f.sound() ? "" : fmt::format("   NOT SOUND, tick {}", f.tick));
-  }
-  text += fmt::format("  energy: {}\n", energy.Text());
-  if (!left_out.empty()) text += fmt::format("  not judged: {}\n", left_out);
-  return text + fmt::format("verdict: {}\n", Verdict());
-}
-
-std::string AuditReport::Verdict() const {
-  return sound() ? "sound, every number agrees with the mechanism"
-                 : "not sound, these numbers are not those of this mechanism";
-}
-
-std::string EnergyBalance::Text() const {
-  return fmt::format(
-      "the hand did {:.4g} J on the mechanism; {:.4g} J went into motion, {:.4g} J into height, "
-      "{:.4g} J into springs, friction and limits of joints, {:.4g} J were lost in time steps; "
-      "constraints did {:.2g} J along free motions",
-      hand, kinetic, weight, joints, lost, constraint);
 }
 
 }  // namespace vmech

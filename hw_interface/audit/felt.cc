@@ -6,21 +6,22 @@
 #include <numbers>
 #include <utility>
 
-#include "vmech/base/linear_algebra/linear_algebra.h"
 #include "vmech/base/rotation_error.h"
 #include "vmech/dynamics/in_hand/passive_joints.h"
 #include "vmech/dynamics/rigid_body/newton_euler.h"
+#include "vmech/hw_interface/audit/felt_motion.h"
 #include "vmech/hw_interface/audit/promise.h"
-#include "vmech/kinematics/loops/dimensionless_loops.h"
-#include "vmech/kinematics/loops/loops.h"
+#include "vmech/hw_interface/rendering/free_motions.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
+#include "vmech/kinematics/tree/grasp_rows.h"
 
 namespace vmech {
 namespace {
 
-constexpr double kBlock = 5e-3;    // [s], of ticks that are taken together
-constexpr double kBandwidth = 15;  // [Hz]
-constexpr double kSettling = 0.2;  // [s], after which the filters have forgotten
+constexpr double kBlock = 5e-3;     // [s], of ticks that are taken together
+constexpr double kBandwidth = 7;    // [Hz], of each of four filters: of all together 3 Hz
+constexpr double kSettling = 0.4;   // [s], after which the filters have forgotten
+constexpr double kWithheld = 0.02;  // of the force: more is another wrench than the mechanism's
 
 /// Four filters of first order, one after the other.
 class LowPass {
@@ -72,7 +73,11 @@ class LeastSquares {
     const double rest = std::max(0.0, yy_ - theta.dot(b_));
     const double variance = repeated * rest / static_cast<double>(count_);
     felt.value = theta[i];
-    felt.error = std::sqrt(variance * factor.solve(Unknowns::Unit(i))[i]);
+    const double inverse = factor.solve(Unknowns::Unit(i))[i];
+    // The fit of x_i to y and the others would say theta + rest A^-1 / theta: between the two is
+    // the truth, however the noise is spread over both sides [Frisch 1934].
+    const double between = rest * inverse / std::abs(theta[i]);
+    felt.error = std::max(std::sqrt(variance * inverse), 0.5 * between);
     felt.known = std::isfinite(felt.error);
     return felt;
   }
@@ -101,7 +106,7 @@ struct BlockPose {
     ForwardKinematics(tree, q.data(), &ws);
     BodyInertias(tree, ws, &inertias);
     GraspJacobian(tree, ws, grasp.node, grasp.X_BG, &J);
-    const MatrixXd N = AllowedMotions(tree);
+    const MatrixXd N = FreeMotions(tree, &ws);
     const MatrixXd JN = J * N;
     const MatrixXd gram = JN.transpose() * K.asDiagonal() * JN;
     const Eigen::LLT<MatrixXd> factor(gram);
@@ -127,15 +132,6 @@ struct BlockPose {
     return tau;
   }
 
-  MatrixXd AllowedMotions(const KinematicTree& tree) {
-    if (tree.loops.empty()) return MatrixXd::Identity(tree.nv, tree.nv);
-    LoopErrors(tree, &ws);
-    LoopJacobian(tree, &ws);
-    return FindNullSpace(BindingRowScale(tree).asDiagonal() * DenseLoopJacobian(tree, ws),
-                         kRankTolerance)
-        .basis;
-  }
-
   TreeWorkspace<double> ws;
   TreeInertias<double> inertias;
   VectorXd q, tau;
@@ -152,12 +148,6 @@ struct BlockMeans {
   bool whole = true;  // nothing was withheld
 };
 
-/// Where the paper's way says what share of the inertia it renders; -1 where all of it is.
-int ChannelOfShare(const std::vector<std::string>& channels) {
-  const auto found = std::find(channels.begin(), channels.end(), "inertia_share");
-  return found == channels.end() ? -1 : static_cast<int>(found - channels.begin());
-}
-
 Vector6d InWorld(const Matrix3d& R_WD, const Vector6d& F_D) {
   Vector6d F_W;
   F_W << R_WD * F_D.head<3>(), R_WD * F_D.tail<3>();
@@ -170,8 +160,9 @@ struct FeltFit::Parts {
   Parts(const RecordingHeader& header, const RecordedTree& mechanism)
       : held(mechanism),
         promise(PromiseOf(header)),
+        own(header),
         period(header.period),
-        share_channel(ChannelOfShare(header.channels)),
+        share_channel(header.ChannelOf("inertia_share")),
         block_ticks(std::max(1, static_cast<int>(std::lround(kBlock / period)))),
         step(block_ticks * period),
         device_delay(header.delay),
@@ -187,7 +178,7 @@ struct FeltFit::Parts {
     length << Vector3d::Ones(), Vector3d::Constant(L);
     K = promise.coupling.stiffness;
     if (K.head<3>().minCoeff() <= 0) K = length.cwiseAbs2();
-    if (held.grasp.kind == GraspKind::kPoint) K.tail<3>().setZero();
+    K = RowsThatCount(K, held.grasp.kind);
   }
 
   void Take(const TickRecord& tick);
@@ -200,6 +191,7 @@ struct FeltFit::Parts {
 
   const RecordedTree& held;
   SessionPromise promise;
+  OwnWrench own;
   double period;
   int share_channel;
   int block_ticks;
@@ -249,8 +241,12 @@ void FeltFit::Parts::Take(const TickRecord& tick) {
   block.exerted += senses ? InWorld(R_WD, tick.state.applied_F_Ho_D) : told;
   block.stretch += HandError(tick.picture.X_WG, tick.picture.X_WH);
   block.share += share_channel < 0 ? 1 : tick.channels[static_cast<size_t>(share_channel)];
+  const Vector6d missing = tick.sent_F_Ho_D - tick.wanted_F_Ho_D;
+  const bool withheld =
+      missing.head<3>().norm() > kWithheld * std::max(1.0, tick.wanted_F_Ho_D.head<3>().norm());
   block.whole = block.whole && tick.off == ForceOff::kNone && !(tick.stages & kRamped) &&
-                tick.picture.holds && tick.io == IoStatus::kOk && tick.skipped == 0;
+                !withheld && own.IsIn(tick, kWithheld) && tick.picture.holds &&
+                tick.io == IoStatus::kOk && tick.skipped == 0;
   sent_before = sent;
   sent = tick.sent_F_Ho_D;
   if (++block.ticks < block_ticks) return;

@@ -17,10 +17,13 @@ namespace vmech {
 /// F what the device exerted on the hand, V_H the hand's twist, v' by differences, M v' + c and h
 /// the mechanism's inertia and weight, tau_p springs and friction of its joints, e1 from grasp to
 /// hand, s the scale, S the share of the inertia that the paper's way renders at the pose, else 1.
-/// Both sides go through the same low-pass filter of some 15 Hz, so that what they have in common
-/// is not changed by it. P comes from the recorded pose; soft start and ticks without force are
-/// left out. Calibrated wrenches are needed: where the device does not sense what it exerts, it is
-/// taken to do what it is told.
+/// Both sides go through the same low-pass filter of 3 Hz, below which inertia is promised, so that
+/// what they have in common is not changed by it. P comes from the recorded pose. Left out is what
+/// says nothing of the mechanism: the soft start, ticks whose force was withheld by more than 2 %,
+/// and those whose wrench is that of a slipping coupling, a stop or a bound (OwnWrench). Where both
+/// sides are noisy, a figure counts as uncertain by as much as the fit of its own term to the rest
+/// would differ. Calibrated wrenches are needed: where the device does not sense what it exerts, it
+/// is taken to do what it is told.
 class FeltFit : public TickListener {
  public:
   /// Keeps a reference to the mechanism.

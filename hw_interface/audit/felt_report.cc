@@ -8,7 +8,7 @@
 namespace vmech {
 namespace {
 
-constexpr double kWorstFit = 0.1;  // standard error of what is still told
+constexpr double kWorstFit = 0.05;  // error of what is still told
 
 bool IsTold(const Felt& felt, double size) {
   return felt.known && felt.error <= kWorstFit * std::max(size, 1e-12);
@@ -30,7 +30,11 @@ std::string Share(std::uint64_t count, std::uint64_t of) {
 std::string Against(const Felt& felt) {
   constexpr double kNear = 0.05;
   const double off = felt.value / felt.promised - 1;
-  if (std::abs(off) <= kNear + 2 * felt.error / std::abs(felt.promised)) return "as promised";
+  const double error = 2 * felt.error / std::abs(felt.promised);
+  if (std::abs(off) <= kNear + error) {
+    return error <= kNear ? "as promised"
+                          : fmt::format("as promised within {:.0f} %", 100 * (kNear + error));
+  }
   return fmt::format("{:.0f} % {} than promised", 100 * std::abs(off), off > 0 ? "more" : "less");
 }
 
@@ -73,7 +77,7 @@ std::string FeltReport::Verdict() const {
   if (IsTold(stiffness, stiffness.promised)) {
     words += (words.empty() ? "" : ", ") + ("the constraints " + Against(stiffness));
   }
-  if (words.empty()) words = "this session moved too little to tell what was felt";
+  if (words.empty()) words = "this session shows too little to tell what was felt";
   std::uint64_t without = 0;
   for (const std::uint64_t count : off) without += count;
   if (stages[1] * 100 > ticks) words += "; passivity damped in " + Share(stages[1], ticks);

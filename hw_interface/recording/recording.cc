@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <system_error>
 
@@ -30,6 +31,11 @@ double RecordingHeader::Number(std::string_view wanted, double otherwise) const 
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   const bool sound = error == std::errc{} && end == text.data() + text.size() && !text.empty();
   return sound ? value : otherwise;
+}
+
+int RecordingHeader::ChannelOf(std::string_view name) const {
+  const auto found = std::find(channels.begin(), channels.end(), name);
+  return found == channels.end() ? -1 : static_cast<int>(found - channels.begin());
 }
 
 std::string RecordingHeader::KeyOf(std::string_view key, int hand) {

@@ -87,6 +87,8 @@ struct RecordingHeader : RecordedDevice {
   std::string Note(std::string_view wanted) const;
   /// A note that is a number; a value of its own where there is none.
   double Number(std::string_view wanted, double otherwise) const;
+  /// Where a tick has the channel of this name; -1: nowhere.
+  int ChannelOf(std::string_view name) const;
   int hands() const { return static_cast<int>(others.size()) + 1; }  ///< at least 1
   /// The key of a note about a hand, counted from 0: "grasp", "grasp_2", ..
   static std::string KeyOf(std::string_view key, int hand);

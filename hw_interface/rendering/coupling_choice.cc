@@ -7,12 +7,11 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "vmech/base/linear_algebra/linear_algebra.h"
 #include "vmech/dynamics/rigid_body/newton_euler.h"
+#include "vmech/hw_interface/rendering/free_motions.h"
 #include "vmech/kinematics/loops/assembly.h"
-#include "vmech/kinematics/loops/dimensionless_loops.h"
-#include "vmech/kinematics/loops/loops.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
+#include "vmech/kinematics/tree/grasp_rows.h"
 
 namespace vmech {
 namespace {
@@ -25,16 +24,6 @@ constexpr double kJerk = 20;    // [m/s^2]: what a step of the encoders may do t
 constexpr double kLever = 0.1;  // [m], of a hand that turns
 constexpr double kLeastScale = 1e-6;
 constexpr double kStiffest = 1e8;  // [N/m], at the mechanism, beyond what its inertia needs
-
-/// Basis of C v = 0 [nv, mobility].
-MatrixXd AllowedMotions(const KinematicTree& tree, TreeWorkspace<double>* ws) {
-  if (tree.loops.empty()) return MatrixXd::Identity(tree.nv, tree.nv);
-  constexpr double kRank = 1e-9;
-  LoopErrors(tree, ws);
-  LoopJacobian(tree, ws);
-  return FindNullSpace(BindingRowScale(tree).asDiagonal() * DenseLoopJacobian(tree, *ws), kRank)
-      .basis;
-}
 
 /// w_d: as fast as hold, delay and filter let a handle swing on the coupling, and no faster than
 /// the steps of its encoders allow, w^2 D <= kJerk, and than a brisk hand may change the force.
@@ -85,7 +74,7 @@ HandCoupling SoftCoupling(const DeviceInfo& device) {
 MatrixXd Excursions(const KinematicTree& tree, const VectorXd& q, double angle) {
   TreeWorkspace<double> ws(tree);
   ForwardKinematics(tree, q.data(), &ws);
-  MatrixXd N = AllowedMotions(tree, &ws);
+  MatrixXd N = FreeMotions(tree, &ws);
   for (const TreeNode& node : tree.nodes) {
     if (node.v >= 0 && node.motion == NodeMotion::kPrismatic) N.row(node.v) /= tree.length;
   }
@@ -140,8 +129,8 @@ double OrInfinite(double peak) {
 void WithoutMoments(const DeviceInfo& device, HandCoupling* coupling) {
   const bool has_force = device.takes_wrench || device.takes_torque;
   if (!has_force || device.angular.peak > 0) return;
-  coupling->stiffness.tail<3>().setZero();
-  coupling->damping.tail<3>().setZero();
+  coupling->stiffness = RowsThatCount(coupling->stiffness, GraspKind::kPoint);
+  coupling->damping = RowsThatCount(coupling->damping, GraspKind::kPoint);
 }
 
 /// Of the handle's masses D at the rate w.
@@ -157,19 +146,20 @@ HandCoupling CouplingAt(double rate, const Vector6d& D, const DeviceInfo& device
 
 SafetyOptions CouplingChoice::Safety() const {
   SafetyOptions safety;
-  if (inertia_ratio == 0) return safety;
+  if (inertia_ratio == 0) return WithoutBlows(safety, device);
   safety.carried_start = true;
   safety.passivity.grace = unseen_work;
   safety.passivity.forgiven = 5 * unseen_work;
   safety.energy_trip = 10 * unseen_work;
   safety.force_slew = 5e4;
   safety.moment_slew = 2500;
-  return safety;
+  return WithoutBlows(safety, device);
 }
 
 CouplingChoice ChooseCoupling(const KinematicTree& tree, const GraspFrame& grasp, const VectorXd& q,
                               const DeviceInfo& device, double smoothing, double scale) {
   CouplingChoice choice;
+  choice.device = device;
   choice.inertia_ratio = RatioAlongThePath(tree, grasp, q, device);
   if (choice.inertia_ratio == 0) {
     choice.coupling = SoftCoupling(device);
@@ -196,17 +186,16 @@ CouplingChoice ChooseCoupling(const KinematicTree& tree, const GraspFrame& grasp
 }
 
 Vector6d HandleMasses(const GraspFrame& grasp, const DeviceInfo& device) {
-  const double turning = grasp.kind == GraspKind::kRigid ? device.angular.mass : 0;
   Vector6d D;
-  D << Vector3d::Constant(device.linear.mass), Vector3d::Constant(turning);
-  return D;
+  D << Vector3d::Constant(device.linear.mass), Vector3d::Constant(device.angular.mass);
+  return RowsThatCount(D, grasp.kind);
 }
 
 double InertiaRatio(const KinematicTree& tree, const GraspFrame& grasp, const VectorXd& q,
                     const DeviceInfo& device) {
   TreeWorkspace<double> ws(tree);
   ForwardKinematics(tree, q.data(), &ws);
-  const MatrixXd N = AllowedMotions(tree, &ws);
+  const MatrixXd N = FreeMotions(tree, &ws);
   if (N.cols() == 0) {
     throw std::invalid_argument(
         fmt::format("'{}' has no freedom at this pose: there is nothing that a hand could move",

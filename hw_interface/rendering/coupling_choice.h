@@ -14,9 +14,10 @@ struct CouplingChoice {
   /// The work that a sample cannot tell: that of the largest wrench along a step of the encoders,
   /// between 0.02 and 0.5 [J].
   double unseen_work = 0.02;
+  DeviceInfo device;  ///< that it was chosen for
 
   /// Safety for a stiff coupling behind encoders: work that they cannot tell is forgiven, ten times
-  /// as much trips, and the force may change as fast as the coupling's.
+  /// as much trips, and the force may change as fast as the coupling's, WithoutBlows.
   SafetyOptions Safety() const;
 };
 

@@ -10,11 +10,12 @@
 #include "vmech/base/rotation_error.h"
 #include "vmech/base/screw_algebra.h"
 #include "vmech/kinematics/inverse/configuration_distance.h"
+#include "vmech/kinematics/tree/grasp_rows.h"
 
 namespace vmech {
 namespace {
 
-constexpr int kOwnChannels = 5;
+constexpr int kOwnChannels = 6;
 constexpr double kFinest = 1e-7;      // [m], [rad]: of a device that states no resolution
 constexpr double kShareTime = 0.01;   // [s] in which the share of inertia follows the pose
 constexpr double kMean = 0.02;        // [s] over which energy given to the hand is smoothed
@@ -113,18 +114,15 @@ MechanismTick::MechanismTick(const KinematicTree& tree, int grasp, const VectorX
       felt_rate_(q_step_),
       peaks_(tree.mechanism) {
   options.Validate();
-  // A point grasp returns no moments (paper section 4).
-  if (tree.mechanism.grasps[grasp].kind == GraspKind::kPoint) {
-    options_.law.stiffness.tail<3>().setZero();
-    options_.law.damping.tail<3>().setZero();
-    options_.handle_masses.tail<3>().setZero();
+  for (Vector6d* rows : {&options_.law.stiffness, &options_.law.damping, &options_.handle_masses}) {
+    *rows = RowsThatCount(*rows, tree.mechanism.grasps[grasp].kind);
   }
   Reset();
 }
 
 std::vector<std::string> MechanismTick::ChannelNames() const {
-  std::vector<std::string> names{"off_position", "off_rotation", "dynamic_force", "state",
-                                 "inertia_share"};
+  std::vector<std::string> names{"off_position", "off_rotation",  "dynamic_force",
+                                 "state",        "inertia_share", "unpaid_energy"};
   peaks_.AppendNames(&names);
   return names;
 }
@@ -329,6 +327,7 @@ void MechanismTick::Report(std::span<double> channels) noexcept {
   channels[2] = dynamics_.w_d().head<3>().norm();
   channels[3] = static_cast<double>(track_);
   channels[4] = share_;
+  channels[5] = unpaid_;
   peaks_.Add(dynamics_.joints(), channels.subspan(kOwnChannels));
 }
 

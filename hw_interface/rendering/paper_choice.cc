@@ -38,10 +38,10 @@ SafetyOptions SafetyFor(const DeviceInfo& device) {
   safety.passivity.grace = std::clamp(QuantisationEnergy(device), kLeast, kMost);
   safety.passivity.forgiven = safety.passivity.grace / kForgetting;
   safety.energy_trip = std::max(safety.energy_trip, 3 * safety.passivity.grace);
-  // What the passivity controller takes away must go at once; the tick keeps to a slew of its own.
+  // What the passivity controller takes away must go soon; the tick keeps to a slew of its own.
   safety.force_slew = 5e4;
   safety.moment_slew = 2500;
-  return safety;
+  return WithoutBlows(safety, device);
 }
 
 /// Half of what the device can exert carries the weight, and a mechanism of which it renders less

@@ -70,6 +70,17 @@ void SafetyOptions::Validate() const {
   passivity.Validate();
 }
 
+SafetyOptions WithoutBlows(SafetyOptions safety, const DeviceInfo& device) {
+  constexpr double kOfPeak = 0.1;
+  const double per_tick = kOfPeak / device.period;
+  const auto limit = [&](double peak, double least, double* slew) {
+    if (peak > 0) *slew = std::min(*slew, std::max(least, per_tick * peak));
+  };
+  limit(device.linear.peak, 1, &safety.force_slew);
+  limit(device.angular.peak, 0.1, &safety.moment_slew);
+  return safety;
+}
+
 SafetyFilter::SafetyFilter(const SafetyOptions& options, const DeviceInfo& info)
     : options_(Completed(options, info)),
       period_(info.period),

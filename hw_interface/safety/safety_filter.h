@@ -58,6 +58,11 @@ struct SafetyOptions {
   void Validate() const;
 };
 
+/// The same, with a force and a moment that change by no more than a tenth of the device's peak
+/// from one tick to the next: what strikes a stop is felt as a push, not as a blow. The energy is
+/// that of what was sent, so passivity holds; what is taken away goes within ten ticks.
+SafetyOptions WithoutBlows(SafetyOptions safety, const DeviceInfo& device);
+
 /// What the filter judges in a tick.
 struct SafetyInput {
   Lifecycle lifecycle = Lifecycle::kUnconfigured;  ///< of the device, when it was read

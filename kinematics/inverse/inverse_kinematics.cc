@@ -13,6 +13,7 @@
 #include "vmech/kinematics/loops/loop_derivatives.h"
 #include "vmech/kinematics/loops/loops.h"
 #include "vmech/kinematics/tree/forward_kinematics.h"
+#include "vmech/kinematics/tree/grasp_rows.h"
 #include "vmech/kinematics/tree/validity.h"
 #include "vmech/mechanisms/validity.h"
 
@@ -43,8 +44,7 @@ Vector6d EffectiveStiffness(const Vector6d& given, GraspKind kind, double length
     K.head<3>().setOnes();
     K.tail<3>().setConstant(length * length);
   }
-  if (kind == GraspKind::kPoint) K.tail<3>().setZero();
-  return K;
+  return RowsThatCount(K, kind);
 }
 
 double MeanOfPositive(const Vector3d& values) {

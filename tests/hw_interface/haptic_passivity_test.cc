@@ -96,7 +96,7 @@ void RunSession(unsigned seed) {
   options.seconds = Seconds();
   options.record = true;
   options.realtime.reset();
-  if (seed % 2 == 0) options.safety = CouplingChoice{{}, 1, 1, 0}.Safety();
+  if (seed % 2 == 0) options.safety = CouplingChoice{{}, 1, 1, 0, 0.02, master.info()}.Safety();
   options.safety.soft_start = random.Between(0, 0.2);
   LossyClock clock(seed);
   Runner runner(options, &master, tick.get(), &clock);
