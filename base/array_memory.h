@@ -19,6 +19,7 @@ class ArrayMemory {
   ArrayMemory() = default;
   /// Room for so many bytes; what is asked for beyond them comes in further pieces.
   explicit ArrayMemory(size_t bytes);
+  /// Takes the piece over; it stays where it is.
   ArrayMemory(ArrayMemory&&) = default;
   ArrayMemory& operator=(ArrayMemory&&) = delete;
   ArrayMemory(const ArrayMemory&) = delete;
