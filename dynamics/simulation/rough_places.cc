@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "vmech/dynamics/rigid_body/passive.h"
 #include "vmech/mechanisms/joint_type.h"
 
 namespace vmech {
@@ -122,6 +123,19 @@ bool StaysOnLoops(EquationsOfMotion* equations, const Approach& approach, const 
   return equations->motion().closure() <= kClosed;
 }
 
+/// Does anything act against velocities? Nothing decays in a mechanism that keeps its energy: what
+/// looks like it for a while is how its inertia changes as it moves.
+bool Decays(const Simulation& simulation) {
+  const std::vector<Joint>& joints = simulation.mechanism.joints;
+  const auto damps = [](const Passive& passive) { return passive.viscous != 0; };
+  return simulation.hand || HasDryFriction(simulation.mechanism) ||
+         std::any_of(simulation.motors.begin(), simulation.motors.end(),
+                     [](const JointMotor& motor) { return motor.damping != 0; }) ||
+         std::any_of(joints.begin(), joints.end(), [&](const Joint& joint) {
+           return std::any_of(joint.passive.begin(), joint.passive.end(), damps);
+         });
+}
+
 }  // namespace
 
 void Leap::At(double time, VectorXd* y) const {
@@ -216,6 +230,19 @@ double FastestDecay(double time, const VectorXd& y, EquationsOfMotion* equations
     d = Jd;
   }
   return std::max(0.0, -rate);
+}
+
+StiffnessWatch::StiffnessWatch(const Simulation& simulation) : decays_(Decays(simulation)) {}
+
+bool StiffnessWatch::Limits(long steps, double time, const VectorXd& y,
+                            EquationsOfMotion* equations) {
+  constexpr double kShort = 0.3;
+  if (!decays_ || steps < next_look_) return false;
+  const double step = (time - last_look_) / static_cast<double>(steps - looked_at_);
+  last_look_ = time;
+  looked_at_ = steps;
+  next_look_ = 2 * steps;
+  return FastestDecay(time, y, equations) * step >= kShort;
 }
 
 }  // namespace vmech

@@ -5,6 +5,7 @@
 
 #include "vmech/base/eigen.h"
 #include "vmech/dynamics/simulation/equations/equations_of_motion.h"
+#include "vmech/dynamics/simulation/simulation.h"
 #include "vmech/mechanisms/mechanism.h"
 
 namespace vmech {
@@ -46,5 +47,21 @@ std::string DescribePlace(double time, const VectorXd& y, const DisplayUnits& un
 /// The largest eigenvalue of df/dy, by a power iteration, if it is real and negative: its size
 /// [1/s]; else 0.
 double FastestDecay(double time, const VectorXd& y, EquationsOfMotion* equations);
+
+/// Looks, ever more seldom, whether what decays fastest keeps the steps of a run short.
+class StiffnessWatch {
+ public:
+  explicit StiffnessWatch(const Simulation& simulation);
+
+  /// The run begins at a time [s].
+  void BeginAt(double time) { last_look_ = time; }
+  /// Is the run stiff, at a state that the integrator's `steps` led to?
+  bool Limits(long steps, double time, const VectorXd& y, EquationsOfMotion* equations);
+
+ private:
+  bool decays_;                           ///< does anything?
+  long next_look_ = 100, looked_at_ = 0;  ///< steps
+  double last_look_ = 0;                  ///< [s]
+};
 
 }  // namespace vmech

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "vmech/kinematics/loops/dimensionless_loops.h"
 
@@ -82,14 +83,37 @@ std::string RunAudit::DescribeCreeping(long steps, double time, double end) {
   const double passed = time - stood_.time;
   const bool stands = passed <= kRounding * static_cast<double>(kLook) * std::abs(time);
   stood_ = {steps, time};
-  const char* const text = "the last {} steps led on by {:.3g} s";
-  if (stands) return fmt::format(fmt::runtime(text), kLook, passed);
+  constexpr std::string_view kText = "the last {} steps led on by {:.3g} s";
+  if (stands) return fmt::format(kText, kLook, passed);
   const long taken = steps - crept_.steps;
   if (taken < kLongLook) return {};
   const double crept = time - crept_.time;
   crept_ = {steps, time};
   const double reach = crept / static_cast<double>(taken) * static_cast<double>(options_.max_steps);
-  return kTimes * reach >= end - time ? "" : fmt::format(fmt::runtime(text), taken, crept);
+  return kTimes * reach >= end - time ? "" : fmt::format(kText, taken, crept);
+}
+
+std::string RunAudit::DescribeChatter(double time, const Simulation& simulation,
+                                      const std::vector<SimulationEvent>& events) {
+  constexpr long kMany = 2000;
+  constexpr double kNoTime = 1e-6;  // of the run
+  if (++changes_ % kMany != 0) return {};
+  const double passed = time - changed_at_.value_or(simulation.times.front());
+  changed_at_ = time;
+  if (passed > kNoTime * (simulation.times.back() - simulation.times.front())) return {};
+  const FreedomId at = events.empty() ? FreedomId{} : events.back().at;
+  const std::vector<Joint>& joints = equations_.tree().mechanism.joints;
+  const std::string_view drives =
+      simulation.drives.empty()
+          ? ""
+          : "; a drive moves as prescribed whatever it takes: where it runs into a limit, end "
+            "the run there (`watch` with `ends`), widen the limit, or take a motor";
+  return fmt::format(
+      "contacts stick, slip, open and close {} times within {:.3g} s, last that of "
+      "'{}', and nothing else happens; give limits some restitution or none, or "
+      "friction to fewer joints{}",
+      kMany, passed, at.joint < 0 ? "a drive" : NameOfFreedom(joints[at.joint], at.freedom),
+      drives);
 }
 
 }  // namespace vmech

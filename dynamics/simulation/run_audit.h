@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "vmech/base/eigen.h"
 #include "vmech/dynamics/simulation/equations/equations_of_motion.h"
@@ -42,6 +43,11 @@ class RunAudit {
   /// does.
   std::string DescribeCreeping(long steps, double time, double end);
 
+  /// Contacts have changed, the last of them by the last of the events: why they lead nowhere,
+  /// where they change and change again while no time passes. Empty if it does.
+  std::string DescribeChatter(double time, const Simulation& simulation,
+                              const std::vector<SimulationEvent>& events);
+
  private:
   struct Energy {
     double balance = 0;  ///< what is stored, less supplied, plus dissipated [J]
@@ -61,6 +67,8 @@ class RunAudit {
   double largest_ = 0;                  ///< energy in play that there has been [J]
   Milestone stood_, crept_;             ///< where DescribeCreeping looked last
   std::optional<double> first_weight_;  ///< energy [J]
+  long changes_ = 0;                    ///< of contacts
+  std::optional<double> changed_at_;    ///< when many of them had been [s]
 };
 
 }  // namespace vmech

@@ -7,9 +7,10 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
-#include "vmech/dynamics/rigid_body/passive.h"
 #include "vmech/dynamics/simulation/equations/equations_of_motion.h"
 #include "vmech/dynamics/simulation/equations/index_two.h"
 #include "vmech/dynamics/simulation/equilibrium.h"
@@ -21,56 +22,13 @@
 #include "vmech/dynamics/simulation/run_audit.h"
 #include "vmech/dynamics/simulation/start_state.h"
 #include "vmech/dynamics/simulation/sudden_events.h"
+#include "vmech/dynamics/simulation/tolerances.h"
 #include "vmech/kinematics/loops/loops.h"
 
 namespace vmech {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-/// What energies are measured by: the weight and the inertia of all links over a characteristic
-/// length, and the springs of joints [J].
-double EnergyUnit(const KinematicTree& tree) {
-  double unit = 0;
-  for (const TreeNode& node : tree.nodes) {
-    unit += node.mass * tree.length * (tree.mechanism.gravity_W.norm() + tree.length);
-  }
-  for (const Joint& joint : tree.mechanism.joints) {
-    for (const Passive& passive : joint.passive) {
-      unit += (passive.stiffness + passive.viscous) * tree.length * tree.length;
-    }
-  }
-  return unit;
-}
-
-/// Absolute tolerances of a state: coordinates and rates in radians and characteristic lengths.
-/// Energies count where drives prescribe motions, which then take no steps of their own.
-std::vector<double> AbsoluteTolerances(const PreparedSimulation& prepared, double tolerance) {
-  constexpr double kDoesNotCount = 1e30;
-  const KinematicTree& tree = prepared.model.tree;
-  std::vector<double> tolerances(static_cast<size_t>(tree.nq + tree.nv), tolerance);
-  for (const TreeNode& node : tree.nodes) {
-    if (node.motion != NodeMotion::kPrismatic) continue;
-    tolerances[static_cast<size_t>(node.q)] *= tree.length;
-    tolerances[static_cast<size_t>(tree.nq + node.v)] *= tree.length;
-  }
-  const double unit = prepared.simulation.drives.empty() ? 0 : EnergyUnit(tree);
-  tolerances.insert(tolerances.end(), 2, unit > 0 ? tolerance * unit : kDoesNotCount);
-  return tolerances;
-}
-
-/// Does anything act against velocities? Nothing decays in a mechanism that keeps its energy: what
-/// looks like it for a while is how its inertia changes as it moves.
-bool Decays(const Simulation& simulation) {
-  const std::vector<Joint>& joints = simulation.mechanism.joints;
-  const auto damps = [](const Passive& passive) { return passive.viscous != 0; };
-  return simulation.hand || HasDryFriction(simulation.mechanism) ||
-         std::any_of(simulation.motors.begin(), simulation.motors.end(),
-                     [](const JointMotor& motor) { return motor.damping != 0; }) ||
-         std::any_of(joints.begin(), joints.end(), [&](const Joint& joint) {
-           return std::any_of(joint.passive.begin(), joint.passive.end(), damps);
-         });
-}
 
 /// A simulation on its way.
 class Run {
@@ -88,8 +46,7 @@ class Run {
             simulation_, &equations_, [this](double time) { return StateAt(time); },
             &result->events),
         audit_(options, &equations_),
-        may_be_stiff_(options.method == SimulationMethod::kAutomatic &&
-                      Decays(prepared.simulation)),
+        stiffness_(prepared.simulation),
         y_(VectorXd::Zero(equations_.size())),
         dense_(y_) {
     problem_.size = equations_.size();
@@ -139,8 +96,9 @@ class Run {
   }
 
   void FindStart() {
-    time_ = last_look_ = changed_at_ = start();
+    time_ = start();
     audit_.BeginAt(time_);
+    stiffness_.BeginAt(time_);
     const StartState start = FindStartState(prepared_, &equations_);
     result_.moved_rates = start.moved_rates;
     if (!start.note.empty()) result_.notes.push_back(start.note);
@@ -207,6 +165,12 @@ class Run {
     return false;
   }
 
+  /// Fails for a reason, if there is one and the run has not ended before.
+  void StopFor(const std::string& why) {
+    if (result_.status != SimulationStatus::kNotRun || why.empty()) return;
+    Stop(SimulationStatus::kFailed, why);
+  }
+
   void TakeStep() {
     if (integrator_->Step(end())) {
       const double to = integrator_->time();
@@ -219,7 +183,7 @@ class Run {
 
   bool IsTrusted(double to) {
     return !audit_.IsDoubtful(to - time_) ||
-           audit_.Holds(time_, to, y_, LargestDrift(),
+           audit_.Holds(time_, to, y_, LargestDrift(options_, equations_.tree(), y_),
                         [this](double time) { return StateAt(time); });
   }
 
@@ -253,7 +217,7 @@ class Run {
       equations_.Close(time_, y_.data());
       events_.Pass(time_, &y_);
       Restart();
-      StopIfNothingElseHappens();
+      StopFor(audit_.DescribeChatter(time_, simulation_, result_.events));
     } else if (leapt) {
       BringBack();
     } else {
@@ -273,31 +237,6 @@ class Run {
     return fmt::format(
         "the mechanism cannot be followed on ({}): {}; the run ends", why,
         DescribePlace(time_, y_.head(equations_.size()), simulation_.units, &equations_));
-  }
-
-  /// Contacts that change and change again while no time passes lead nowhere.
-  void StopIfNothingElseHappens() {
-    constexpr long kMany = 2000;
-    constexpr double kNoTime = 1e-6;  // of the run
-    if (++changes_ % kMany != 0) return;
-    const double passed = time_ - changed_at_;
-    changed_at_ = time_;
-    if (result_.status != SimulationStatus::kNotRun || passed > kNoTime * (end() - start())) return;
-    const FreedomId at = result_.events.empty() ? FreedomId{} : result_.events.back().at;
-    const Mechanism& mechanism = equations_.tree().mechanism;
-    const std::string drives =
-        simulation_.drives.empty()
-            ? ""
-            : "; a drive moves as prescribed whatever it takes: where it runs into a limit, end "
-              "the run there (`watch` with `ends`), widen the limit, or take a motor";
-    Stop(SimulationStatus::kFailed,
-         fmt::format(
-             "contacts stick, slip, open and close {} times within {:.3g} s, last that of "
-             "'{}', and nothing else happens; give limits some restitution or none, or "
-             "friction to fewer joints{}",
-             kMany, passed,
-             at.joint < 0 ? "a drive" : NameOfFreedom(mechanism.joints[at.joint], at.freedom),
-             drives));
   }
 
   /// After a step that has failed: over a singular pose, or with equations chosen anew.
@@ -351,7 +290,8 @@ class Run {
         StateAt(at);
       }
       recorder_.Record(at, dense_.data());
-      StopIfOutOfBalance();
+      StopFor(audit_.DescribeImbalance(result_.energies.back(),
+                                       statistics_.steps + integrator_->counts().steps));
     }
   }
 
@@ -359,15 +299,7 @@ class Run {
   void StopIfUnresisted() {
     if (result_.status != SimulationStatus::kNotRun) return;
     if (index_two_) equations_.Evaluate(time_, y_.data(), y_.data() + equations_.tree().nq);
-    const std::string why = DescribeUnresisted(equations_.tree(), equations_.motion());
-    if (!why.empty()) Stop(SimulationStatus::kFailed, why);
-  }
-
-  void StopIfOutOfBalance() {
-    if (result_.status != SimulationStatus::kNotRun) return;
-    const std::string why = audit_.DescribeImbalance(
-        result_.energies.back(), statistics_.steps + integrator_->counts().steps);
-    if (!why.empty()) Stop(SimulationStatus::kFailed, why);
+    StopFor(DescribeUnresisted(equations_.tree(), equations_.motion()));
   }
 
   void RecordHere() {
@@ -382,8 +314,9 @@ class Run {
     constexpr double kWell = 0.5, kFarFromSingular = 1e-3;
     const KinematicTree& tree = equations_.tree();
     if (tree.loops.empty() && tree.nq == tree.nv) return;
-    const bool is_well = equations_.motion().closure() <= kWell * LargestDrift() &&
-                         equations_.motion().smallest_pivot() > kFarFromSingular;
+    const bool is_well =
+        equations_.motion().closure() <= kWell * LargestDrift(options_, equations_.tree(), y_) &&
+        equations_.motion().smallest_pivot() > kFarFromSingular;
     if (is_well) {
       equations_.GoOnFromHere();
     } else {
@@ -395,33 +328,16 @@ class Run {
         std::max(statistics_.largest_rate_drift, equations_.RateDrift(y_.data() + tree.nq));
     if (equations_.ChoosesBadly()) equations_.ChooseFreedoms(y_.head(tree.nq));
     const bool worn = index_two_ && index_two_->ChoosesBadly(time_, y_.data());
-    if (drift <= LargestDrift() && !worn) return;
+    if (drift <= LargestDrift(options_, equations_.tree(), y_) && !worn) return;
     BringBack();
   }
 
-  /// Steps of the integrator drift by about their tolerance, which is more of coordinates that have
-  /// grown large. To bring each of them back would make it begin anew each time, of lowest order.
-  double LargestDrift() const {
-    constexpr double kSteps = 10;
-    if (options_.drift_tolerance > 0) return options_.drift_tolerance;
-    const KinematicTree& tree = equations_.tree();
-    const double largest = y_.head(tree.nq).lpNorm<Eigen::Infinity>() / std::max(1.0, tree.length);
-    return kSteps * std::max(options_.relative_tolerance * std::max(1.0, largest),
-                             options_.absolute_tolerance);
-  }
-
   /// Adams takes steps that are short for what decays fastest, though it has long decayed: BDF does
-  /// not. Looked at ever more seldom.
+  /// not.
   void ChangeMethodIfStiff() {
-    constexpr double kShort = 0.3;
-    if (!may_be_stiff_ || statistics_.method != SimulationMethod::kAdams) return;
-    const long steps = integrator_->counts().steps;
-    if (steps < next_look_) return;
-    const double step = (time_ - last_look_) / static_cast<double>(steps - looked_at_);
-    last_look_ = time_;
-    looked_at_ = steps;
-    next_look_ = 2 * steps;
-    if (FastestDecay(time_, y_, &equations_) * step < kShort) return;
+    if (options_.method != SimulationMethod::kAutomatic) return;
+    if (statistics_.method != SimulationMethod::kAdams) return;
+    if (!stiffness_.Limits(integrator_->counts().steps, time_, y_, &equations_)) return;
     CountUp();
     statistics_.method = SimulationMethod::kBdf;
     result_.events.push_back({time_, SimulationEvent::Kind::kMethodChanged, {}, 0, 0});
@@ -452,20 +368,16 @@ class Run {
   Recorder recorder_;
   SuddenEvents events_;
   RunAudit audit_;
+  StiffnessWatch stiffness_;
   InitialValueProblem problem_;
   std::unique_ptr<Integrator> integrator_;
   double time_ = 0;
   std::unique_ptr<IndexTwo> index_two_;
-  bool may_be_stiff_ = false;
   VectorXd y_, dense_, slopes_, leapt_;
-  std::optional<vmech::Leap> leap_;       ///< the last step was one
-  size_t next_ = 0;                       ///< of the times
-  long next_look_ = 100, looked_at_ = 0;  ///< steps at which stiffness is, and was, looked at
-  double tried_pivot_ = 0;                ///< where no leap was found, near a singular pose
-  double failed_at_ = -1;                 ///< when a step failed last [s]
-  double last_look_ = 0;                  ///< when [s]
-  long changes_ = 0;                      ///< of contacts
-  double changed_at_ = 0;                 ///< when many of them had been [s]
+  std::optional<vmech::Leap> leap_;  ///< the last step was one
+  size_t next_ = 0;                  ///< of the times
+  double tried_pivot_ = 0;           ///< where no leap was found, near a singular pose
+  double failed_at_ = -1;            ///< when a step failed last [s]
 };
 
 }  // namespace

@@ -288,6 +288,7 @@ class Simulate(unittest.TestCase):
                 ("{duration: 1, method: 3}", "expected text"),
                 ("{duration: 1, tolerance: 0}", "must be in [1e-14, 0.01]"),
                 ("{duration: 1, rates: [{joint: 3, speed: 1}]}", "expected text"),
+                ("{duration: 1}\nlimits: stop", "in a simulation joints stop at their limits"),
                 ("{duration: 1, restitution: [{joint: pivot, restitution: 2}]}", "at most 1")):
             run = self.vmech("simulate", self.study(simulation), "--out", "out")
             self.assertEqual(run.returncode, 2, run.stdout)

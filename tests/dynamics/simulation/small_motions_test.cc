@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "simulated.h"
 #include "support/windows.h"
@@ -91,6 +93,86 @@ TEST(FindEquilibrium, AMotorHoldsAPendulumOut) {
   ASSERT_TRUE(equilibrium.found) << equilibrium.message;
   EXPECT_NEAR(std::cos(equilibrium.q[0]), 4 / kGravity, 1e-12);
   EXPECT_LT(std::sin(equilibrium.q[0]), 0);  // it hangs
+  EXPECT_EQ(equilibrium.stability, Stability::kStable);
+}
+
+/// Springs whose rests are such that the angles (1.1, 0.4) balance the weight: with absolute angles
+/// a and b of the bars, k1 (a - rest1) = -g (2 cos a + cos b), k2 (b - a - rest2) = -g cos b.
+TEST(FindEquilibrium, AStiffAndASoftSpringHoldAChainWhereTheyWereMadeFor) {
+  Simulation simulation = DoublePendulum();
+  const double a = 1.1, b = 1.5, soft = 40, stiff = 4e4;
+  std::vector<Joint>& joints = simulation.mechanism.joints;
+  joints[0].passive = {{soft, a + kGravity * (2 * std::cos(a) + std::cos(b)) / soft, 0, 0}};
+  joints[1].passive = {{stiff, b - a + kGravity * std::cos(b) / stiff, 0, 0}};
+  joints[1].start = {0.4 + 0.5};
+  const Equilibrium equilibrium = FindEquilibrium(simulation);
+  ASSERT_TRUE(equilibrium.found) << equilibrium.message;
+  EXPECT_NEAR(equilibrium.q[0], a, 1e-12);
+  EXPECT_NEAR(equilibrium.q[1], b - a, 1e-12);
+  EXPECT_EQ(equilibrium.stability, Stability::kStable);
+  EXPECT_LE(equilibrium.iterations, 20);
+}
+
+/// Where the weight has no stiffness Newton's step has no length of its own.
+TEST(FindEquilibrium, APendulumFromTheHorizontalHangsWithoutATurn) {
+  Simulation simulation = DoublePendulum();
+  simulation.mechanism.joints[0].start = {0};
+  const Equilibrium equilibrium = FindEquilibrium(simulation);
+  ASSERT_TRUE(equilibrium.found) << equilibrium.message;
+  EXPECT_NEAR(equilibrium.q[0], kDown, 1e-12);
+  EXPECT_NEAR(equilibrium.q[1], 0, 1e-12);
+  EXPECT_LE(equilibrium.iterations, 20);
+}
+
+TEST(FindEquilibrium, LeavesTheTopDownhill) {
+  Simulation simulation = DoublePendulum();
+  simulation.mechanism.joints[0].start = {-kDown - 1e-3};
+  simulation.mechanism.joints[1].start = {2e-3};
+  const Equilibrium equilibrium = FindEquilibrium(simulation);
+  ASSERT_TRUE(equilibrium.found) << equilibrium.message;
+  EXPECT_NEAR(std::sin(equilibrium.q[0]), -1, 1e-12);
+  EXPECT_NEAR(std::cos(equilibrium.q[1]), 1, 1e-12);
+  EXPECT_EQ(equilibrium.stability, Stability::kStable);
+  EXPECT_LE(equilibrium.iterations, 30);
+}
+
+/// Its second bar turns about its own centre of gravity.
+TEST(FindEquilibrium, ABalancedBarOnAPendulumIsNeutralAndUnstableOnTop) {
+  Simulation simulation = DoublePendulum();
+  simulation.mechanism.links[2].mass_properties = {1, {0, 0, 0}, 0.1 * Matrix3d::Identity()};
+  EXPECT_EQ(FindEquilibrium(simulation).stability, Stability::kNeutral);
+  simulation.mechanism.joints[0].start = {-kDown};
+  EXPECT_EQ(FindEquilibrium(simulation).stability, Stability::kUnstable);
+}
+
+/// A weightless slider drawn along x by a stretched spring to a pin beside its guide:
+/// where it is far away, the force along the guide hardly changes, and Newton's steps are too long.
+TEST(FindEquilibrium, ASpringDrawsASliderBesideItsPin) {
+  Simulation simulation;
+  Mechanism& m = simulation.mechanism;
+  m.links.resize(4);
+  for (size_t i = 0; i < 4; ++i) m.links[i].name = std::string(1, static_cast<char>('a' + i));
+  for (size_t i = 1; i < 4; ++i) {
+    m.links[i].mass_properties = {1, {0, 0, 0}, 0.1 * Matrix3d::Identity()};
+  }
+  const Posed along_x{AxesFromZX(Vector3d::UnitX(), Vector3d::UnitY()), Vector3d::Zero()};
+  m.links[0].anchors = {{"guide", along_x}, {"pin", {Matrix3d::Identity(), {0, 0.1, 0}}}};
+  m.links[1].anchors = {{"guide", along_x}, {"eye", {}}};
+  m.links[2].anchors = {{"pin", {}}, {"rod", along_x}};
+  m.links[3].anchors = {{"rod", along_x}, {"eye", {}}};
+  m.joints = {MakeJoint("guide", JointType::kPrismatic, {0, 0}, {1, 0}),
+              MakeJoint("pin", JointType::kRevolute, {0, 1}, {2, 0}),
+              MakeJoint("rod", JointType::kPrismatic, {2, 1}, {3, 0}),
+              MakeJoint("eye", JointType::kRevolute, {3, 1}, {1, 1})};
+  m.joints[0].start = {1};
+  m.joints[1].start = {std::atan2(-0.1, 1)};
+  m.joints[2].start = {std::hypot(0.1, 1)};
+  m.joints[0].start_given = m.joints[1].start_given = m.joints[2].start_given = true;
+  m.joints[2].passive = {{1, -100, 0, 0}};
+  simulation.times = {0, 1};
+  const Equilibrium equilibrium = FindEquilibrium(simulation);
+  ASSERT_TRUE(equilibrium.found) << equilibrium.message;
+  EXPECT_NEAR(equilibrium.q[0], 0, 1e-12);
   EXPECT_EQ(equilibrium.stability, Stability::kStable);
 }
 

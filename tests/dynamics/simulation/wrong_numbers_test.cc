@@ -248,5 +248,58 @@ TEST(Simulate, DoesNotGoOnForEver) {
   EXPECT_GT(result.times.back(), 0);
 }
 
+/// A four-bar of equal bars without weight, 5/3 kg m^2 about its crank, moved by a moment there.
+Simulation MovedFourBar(const TimeTable& moment, const std::vector<double>& times) {
+  Simulation simulation;
+  simulation.mechanism = Windows(1, 1.2);
+  simulation.mechanism.gravity_W.setZero();
+  JointMotor motor;
+  motor.at = {0, 0};
+  motor.force = moment;
+  simulation.motors = {motor};
+  simulation.times = times;
+  return simulation;
+}
+
+bool AnythingIsCertain(const SimulationResult& result) {
+  for (const JointCertainty& verdicts : result.loads.certainty) {
+    for (const Certainty verdict : verdicts) {
+      if (verdict == Certainty::kCertain) return true;
+    }
+  }
+  return false;
+}
+
+TEST(Certainty, OneContactThatSticksAndSlipsLeavesLoadsCertain) {
+  Simulation simulation = MovedFourBar({{0, 1}, {0, 3}, 0}, {0, 1});
+  simulation.mechanism.joints[0].passive[0].coulomb = 1.5;
+  const SimulationResult result = Simulate(simulation);
+  ASSERT_EQ(result.events.size(), 2U);
+  EXPECT_EQ(result.events[0].kind, SimulationEvent::Kind::kSticks);
+  EXPECT_EQ(result.events[1].kind, SimulationEvent::Kind::kSlips);
+  EXPECT_NEAR(result.events[1].time, 0.5, 1e-9);
+  EXPECT_TRUE(AnythingIsCertain(result));
+}
+
+TEST(Certainty, ALimitThatClosesAndOpensLeavesLoadsCertain) {
+  Simulation simulation = MovedFourBar({{0, 2}, {3, -3}, 0}, {0, 1.5});
+  simulation.mechanism.joints[0].upper = {1.3};
+  const SimulationResult result = Simulate(simulation);
+  ASSERT_EQ(result.events.size(), 2U);
+  EXPECT_EQ(result.events[0].kind, SimulationEvent::Kind::kLimitCloses);
+  EXPECT_EQ(result.events[1].kind, SimulationEvent::Kind::kLimitOpens);
+  EXPECT_NEAR(result.events[1].time, 1, 1e-9);
+  EXPECT_TRUE(AnythingIsCertain(result));
+}
+
+TEST(Certainty, TwoContactsThatStickInALoopLeaveNothingCertain) {
+  Simulation simulation = MovedFourBar({{0, 1}, {0, 1}, 0}, {0, 1});
+  simulation.mechanism.joints[0].passive[0].coulomb = 1.5;
+  simulation.mechanism.joints[1].passive[0].coulomb = 1.5;
+  const SimulationResult result = Simulate(simulation);
+  EXPECT_EQ(result.Q(1), result.Q(0));
+  EXPECT_FALSE(AnythingIsCertain(result));
+}
+
 }  // namespace
 }  // namespace vmech
