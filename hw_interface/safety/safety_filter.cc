@@ -125,6 +125,8 @@ SafetyOutput SafetyFilter::Apply(const SafetyInput& input) noexcept VMECH_NONBLO
   if (options_.max_moment == 0) F.angular = Double4{};
   Ramp(&F, &out);
   Damp(&F, &out);
+  // What passivity damps of rotations too: it would take the force along in the clamp.
+  if (options_.max_moment == 0) F.angular = Double4{};
   Brake(&F, &out);
   Clamp(input.room, &F, &out);
   Slew(&F, &out);

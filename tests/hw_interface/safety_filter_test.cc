@@ -230,6 +230,30 @@ TEST_F(Chain, DropsTheMomentsThatADeviceCannotExert) {
   EXPECT_EQ(out.F_Ho_D.tail<3>(), Vector3d::Zero());
 }
 
+/// The hand turns a handle that has no motors for that: passivity damps what can be damped, and the
+/// force against the hand stays.
+TEST_F(Chain, PassivityLeavesTheForceOfAHandleThatTurnsFreely) {
+  DeviceInfo info = SmallDevice();
+  info.angular = {};
+  SafetyOptions options = Bare();
+  options.passivity.enabled = true;
+  options.energy_trip = 100;
+  SafetyFilter filter(options, info);
+  const Vector6d against = Vector6d::Unit(0) * -3;
+  SafetyOutput out;
+  for (int k = 0; k < 20; ++k) {
+    ++state_.sequence;
+    state_.X_DH.p.x() = 1e-4 * k;
+    state_.X_DH.R = Eigen::AngleAxisd(2e-3 * k, Vector3d::UnitZ()).toRotationMatrix();
+    // More is stored than the hand gives.
+    out = filter.Apply({lifecycle_, io_, &state_, against, 5e-4 * k});
+  }
+  EXPECT_LT(out.energy, 0);
+  EXPECT_TRUE(out.stages & kDamped);
+  EXPECT_LE(out.F_Ho_D[0], -2.5);
+  EXPECT_EQ(out.F_Ho_D.tail<3>(), Vector3d::Zero());
+}
+
 TEST_F(Chain, KeepsForceAndMomentWithinTheRoomOfThePosture) {
   SafetyFilter filter(Bare(), SmallDevice());
   Vector6d F;
