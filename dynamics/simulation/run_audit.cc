@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string_view>
 
 #include "vmech/kinematics/loops/dimensionless_loops.h"
@@ -11,7 +12,10 @@
 namespace vmech {
 
 RunAudit::RunAudit(const SimulationOptions& options, EquationsOfMotion* equations)
-    : options_(options), equations_(*equations), unit_(VelocityScale(equations->tree())) {}
+    : options_(options),
+      equations_(*equations),
+      unit_(VelocityScale(equations->tree())),
+      weighed_(VectorXd::Constant(equations->size(), std::numeric_limits<double>::quiet_NaN())) {}
 
 void RunAudit::Begin() {
   pivot_ = equations_.motion().smallest_pivot();
@@ -25,7 +29,7 @@ bool RunAudit::IsDoubtful(double step) const {
   constexpr double kReach = 2;
   if (equations_.tree().loops.empty()) return false;
   const ConstrainedMotion& motion = equations_.motion();
-  const double moved = step * motion.ws().v.lpNorm<Eigen::Infinity>();
+  const double moved = step * motion.ws().v.cwiseQuotient(unit_).lpNorm<Eigen::Infinity>();
   return std::min(pivot_, motion.smallest_pivot()) < kReach * kReach * moved * moved;
 }
 
@@ -52,13 +56,19 @@ bool RunAudit::KeepsEnergy(double from, const double* start, double to, const do
   return lost <= share * std::max(before.moving, after.moving);
 }
 
+/// A step most often begins with the state that ended the last one.
 RunAudit::Energy RunAudit::EnergyAt(double time, const double* y) {
+  const Eigen::Map<const VectorXd> state(y, weighed_.size());
+  if (time == weighed_at_ && state == weighed_) return energy_;
+  weighed_at_ = time;
+  weighed_ = state;
   const double* const v = y + equations_.tree().nq;
   equations_.Place(time, y, v);
   const double* const exchanged = v + equations_.tree().nv;
   const double moving =
       equations_.KineticEnergyHere() + equations_.forces().SpringEnergy(equations_.motion());
-  return {moving + equations_.WeightEnergyHere() - exchanged[0] + exchanged[1], moving};
+  energy_ = {moving + equations_.WeightEnergyHere() - exchanged[0] + exchanged[1], moving};
+  return energy_;
 }
 
 std::string RunAudit::DescribeImbalance(const EnergySample& sample, long steps) {

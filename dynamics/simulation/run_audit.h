@@ -62,9 +62,12 @@ class RunAudit {
 
   const SimulationOptions& options_;
   EquationsOfMotion& equations_;
-  const VectorXd unit_;                 ///< [nv] a radian or a characteristic length
-  double pivot_ = 1;                    ///< at the beginning of a step
-  double largest_ = 0;                  ///< energy in play that there has been [J]
+  const VectorXd unit_;    ///< [nv] a radian or a characteristic length
+  double pivot_ = 1;       ///< at the beginning of a step
+  double largest_ = 0;     ///< energy in play that there has been [J]
+  VectorXd weighed_;       ///< the state that energy_ is of
+  double weighed_at_ = 0;  ///< [s]
+  Energy energy_;
   Milestone stood_, crept_;             ///< where DescribeCreeping looked last
   std::optional<double> first_weight_;  ///< energy [J]
   long changes_ = 0;                    ///< of contacts

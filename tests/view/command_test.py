@@ -372,7 +372,8 @@ class Recordings(CommandTest):
 
     ENERGIES = {"the hand did (\\S+) J": "work of the hand", "(\\S+) J went into motion": "motion",
                 "(\\S+) J into height": "height", "(\\S+) J into springs": "joints",
-                "(\\S+) J were lost": "lost in steps"}
+                "(\\S+) J were taken": "taken", "(\\S+) J by what closes": "withheld",
+                "(\\S+) J are not traced": "not traced"}
 
     def record(self):
         path = FOLDER / "held.csv"
@@ -423,7 +424,7 @@ class Recordings(CommandTest):
                 return [Array.from(keys, (key) => Number(key.textContent)),
                   charts.flatMap(({series}) => series.map(({values}) => values[i] + part *
                       (values[Math.min(i + 1, values.length - 1)] - values[i])))]""", place)
-            self.assertEqual(len(values), 7)
+            self.assertEqual(len(values), 9)
             for value, exact in zip(values, wanted):
                 self.assertAlmostEqual(value, exact, delta=6e-3 * abs(exact) + 1e-12)
         chart = BROWSER.find_elements(By.CSS_SELECTOR, ".vv-figure canvas")[-1]
