@@ -44,7 +44,13 @@ HeldMechanism::HeldMechanism(const HapticArguments& arguments)
     : HeldMechanism(ReadSubject(arguments.file, arguments.grasps, arguments.set), arguments) {}
 
 HeldMechanism::HeldMechanism(const HapticSubject& held, const HapticArguments& arguments)
-    : HeldMechanism(held, Assembled(arguments, held.mechanism)) {}
+    : HeldMechanism(held, Assembled(arguments, held.mechanism)) {
+  try {
+    RefuseUnrenderedFriction(tree);
+  } catch (const std::invalid_argument& error) {
+    throw FileErrors(arguments.file.string(), error.what());
+  }
+}
 
 HeldMechanism::HeldMechanism(const RecordingHeader& header) : HeldMechanism(SubjectOf(header)) {}
 

@@ -81,6 +81,8 @@ struct RecordingAudit::Parts {
   void JudgeWrenches(const TickRecord& tick);
   void JudgeLinks(const TickRecord& tick);
   void Balance(const TickRecord& tick);
+  bool Pays(const TickRecord& tick) const;
+  static bool Owes(const TickRecord& tick, int hands);
   bool links_are_judged() const { return !held.regrasps && (!promise.paper || felt.knows_rate()); }
 
   RecordedTree held;
@@ -106,7 +108,8 @@ struct RecordingAudit::Parts {
   AuditFinding newton{"force balance of every link, share of the largest", 0, 0, "-", 0};
   int unpaid_channel, losses_channel;
   bool own_before = false;  // OwnWrench of the tick before
-  std::uint64_t ticks = 0, bounded_ticks = 0;
+  bool owed = false;        // the tick before left a debt, or may have
+  std::uint64_t ticks = 0, bounded_ticks = 0, paid_ticks = 0;
   bool started = false;
 };
 
@@ -145,8 +148,22 @@ void RecordingAudit::Parts::Take(const TickRecord& tick) {
     hands[i].dynamic_before = picture.dynamic;
   }
   own_before = own.IsOfNearestPose(tick, kExact);
+  owed = Owes(tick, static_cast<int>(hands.size()));
   std::swap(before, now);
   ++ticks;
+}
+
+/// What the hands were given was more than they gave.
+bool RecordingAudit::Parts::Owes(const TickRecord& tick, int hands) {
+  for (int i = 0; i < hands; ++i) {
+    if (tick.of_hand(i).energy < 0) return true;
+  }
+  return false;
+}
+
+/// Debts of the tick before may have been taken out of the velocities: then no losses are left.
+bool RecordingAudit::Parts::Pays(const TickRecord& tick) const {
+  return owed && !promise.paper && (losses_channel < 0 || Channel(tick, losses_channel) == 0);
 }
 
 /// In the paper's way with the motion of the inertia that is felt.
@@ -249,7 +266,12 @@ void RecordingAudit::Parts::JudgeLinks(const TickRecord& tick) {
     balance.TakeHand(hands[i].grasp.node, hands[i].X_WG_before.p,
                      picture.hand(static_cast<int>(i)).dynamic);
   }
-  newton.Add(balance.OffInStep(before, now), ticks);
+  const double off = balance.OffInStep(before, now);
+  if (Pays(tick)) {
+    ++paid_ticks;
+  } else {
+    newton.Add(off, ticks);
+  }
 }
 
 /// The virtual coupling pulls at the grasp, in a step with the wrench of its end. In the paper's
@@ -270,6 +292,7 @@ void RecordingAudit::Parts::Balance(const TickRecord& tick) {
   step.corrected = balance.corrected();
   step.moved = balance.moved();
   step.constraint = balance.constraint_work();
+  step.paid = Pays(tick);
   step.faithful = own_before && own.IsOfNearestPose(tick, kExact);
   trace.Add(before, now, step);
 }
@@ -329,6 +352,11 @@ AuditReport RecordingAudit::Report() const {
         "constraints along free motions in {} ticks in which the pose was not the nearest to the "
         "hand, or the hand's wrench kept within bounds",
         p.bounded_ticks);
+  }
+  if (p.paid_ticks > 0) {
+    report.left_out = fmt::format(
+        "links and energy in {} ticks in which the mechanism may have paid what no hand gave",
+        p.paid_ticks);
   }
   const EnergyBalance& energy = report.energy;
   const double size = std::max(energy.throughput, kLeastWork);

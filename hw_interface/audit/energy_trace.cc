@@ -66,6 +66,7 @@ void EnergyTrace::AddStepped(const AuditedPose& before, const AuditedPose& now,
   }
   // Ways are curved: a force along the way of a step does another work than along its velocities.
   balance_.untraced_bound += turn * (step.throughput + step.moved + turn * moving);
+  if (step.paid) balance_.withheld = balance_.lost() - balance_.taken - balance_.untraced;
 }
 
 }  // namespace vmech

@@ -11,6 +11,8 @@ struct TracedStep {
   double throughput = 0;  ///< the sum of its sizes [J]
   double joints = 0;      ///< given to springs, friction and limits, in the virtual coupling [J]
   // In the virtual coupling:
+  /// The mechanism paid what no hand gave out of its velocities; by how much is not recorded.
+  bool paid = false;
   double corrected = 0;   ///< work of what closes the loops [J]
   double moved = 0;       ///< all forces times the ways of the step, of whatever direction [J]
   double constraint = 0;  ///< work of the constraints [J]

@@ -213,6 +213,7 @@ struct FeltFit::Parts {
   Vector6d sent = Vector6d::Zero(), sent_before = Vector6d::Zero();  // of the last two ticks
   double shares = 0;                                                 // of all blocks that count
   std::uint64_t shared = 0;
+  std::uint64_t poses = 0, unreached = 0;  // looked at; with freedoms that the hand misses
   double noise = 0;
   std::uint64_t noisy_ticks = 0;
   bool senses = false;
@@ -268,6 +269,8 @@ void FeltFit::Parts::EndBlock(const TickRecord& tick) {
   means.share *= share;
   std::swap(pose, last_pose);
   pose.sound = pose.Set(held.tree, held.grasp, K, tick.picture.q);
+  ++poses;
+  unreached += !pose.sound;
   const Posed X_WH_before = X_WH;
   X_WH = tick.picture.X_WH;
   last_v.swap(v);
@@ -352,6 +355,7 @@ FeltReport FeltFit::Report() const {
   report.period = p.period;
   if (p.shared > 0) report.share = p.shares / static_cast<double>(p.shared);
   const double repeated = std::max(1.0, 1 / (2 * kBandwidth * p.step));
+  report.unreached = 2 * p.unreached > p.poses;
   report.inertia = p.along_fit.Fit(0, p.promise.inertia, repeated);
   report.weight = p.along_fit.Fit(1, 1, repeated);
   report.damping = p.along_fit.Fit(2, 0, repeated);

@@ -38,20 +38,30 @@ std::string Against(const Felt& felt) {
   return fmt::format("{:.0f} % {} than promised", 100 * std::abs(off), off > 0 ? "more" : "less");
 }
 
+/// What is fitted, a line for each figure.
+std::string FittedFigures(const FeltReport& felt) {
+  constexpr double kPercent = 100, kMilli = 1e3;
+  std::string text;
+  const std::string whose =
+      felt.share < 1 - 1e-9
+          ? fmt::format("% of the share rendered, {:.3g} % on average", 100 * felt.share)
+          : "% of the mechanism's";
+  text += Line("  inertia", felt.inertia, felt.inertia.promised, kPercent, whose.c_str());
+  text += Line("  weight", felt.weight, felt.weight.promised, kPercent, "% of the mechanism's");
+  text += Line("  damping, free motion", felt.damping, 10, 1, "N s/m");
+  text += Line("  stiffness, constraints", felt.stiffness, felt.stiffness.promised, 1, "N/m");
+  text +=
+      Line("  damping, constraints", felt.resistance, 0.02 * felt.stiffness.promised, 1, "N s/m");
+  text += Line("  delay of the device", felt.delay, 0.01, kMilli, "ms");
+  return text;
+}
+
 }  // namespace
 
 std::string FeltReport::Text() const {
-  constexpr double kPercent = 100, kMilli = 1e3;
   std::string text = "  felt, fitted to this session\n";
-  const std::string whose =
-      share < 1 - 1e-9 ? fmt::format("% of the share rendered, {:.3g} % on average", 100 * share)
-                       : "% of the mechanism's";
-  text += Line("  inertia", inertia, inertia.promised, kPercent, whose.c_str());
-  text += Line("  weight", weight, weight.promised, kPercent, "% of the mechanism's");
-  text += Line("  damping, free motion", damping, 10, 1, "N s/m");
-  text += Line("  stiffness, constraints", stiffness, stiffness.promised, 1, "N/m");
-  text += Line("  damping, constraints", resistance, 0.02 * stiffness.promised, 1, "N s/m");
-  text += Line("  delay of the device", delay, 0.01, kMilli, "ms");
+  text += unreached ? "    not told: the mechanism has freedoms that the hand does not reach\n"
+                    : FittedFigures(*this);
   text += fmt::format("  {:<26} {:>9.3g} N RMS from tick to tick, at most {:.3g} N\n", "  noise",
                       noise, largest_change);
   constexpr std::array<const char*, kSafetyStages> kWhy{"soft start", "damped by passivity",
@@ -77,7 +87,11 @@ std::string FeltReport::Verdict() const {
   if (IsTold(stiffness, stiffness.promised)) {
     words += (words.empty() ? "" : ", ") + ("the constraints " + Against(stiffness));
   }
-  if (words.empty()) words = "this session shows too little to tell what was felt";
+  if (unreached) {
+    words = "what was felt is not told, since the hand does not reach every freedom";
+  } else if (words.empty()) {
+    words = "this session shows too little to tell what was felt";
+  }
   std::uint64_t without = 0;
   for (const std::uint64_t count : off) without += count;
   if (stages[1] * 100 > ticks) words += "; passivity damped in " + Share(stages[1], ticks);

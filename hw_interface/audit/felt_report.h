@@ -27,10 +27,13 @@ struct FeltReport {
   Felt stiffness;           ///< against the constraints [N/m]
   Felt resistance;          ///< damping against the constraints [N s/m]
   Felt delay;               ///< from a command to its wrench at the handle [s]
-  double noise = 0;         ///< of the force sent: RMS of what is new in every tick [N]
-  double largest_change = 0;                 ///< of the force sent, from a tick to the next [N]
-  static constexpr int kCauses = 16;         ///< room for every ForceOff
-  std::array<std::uint64_t, kCauses> off{};  ///< ticks without force, by ForceOff
+  /// Most poses of the session have freedoms that the hand does not reach, and forces along them
+  /// that it does not feel: nothing is fitted.
+  bool unreached = false;
+  double noise = 0;                   ///< of the force sent: RMS of what is new in every tick [N]
+  double largest_change = 0;          ///< of the force sent, from a tick to the next [N]
+  static constexpr int kCauses = 16;  ///< room for every ForceOff
+  std::array<std::uint64_t, kCauses> off{};           ///< ticks without force, by ForceOff
   std::array<std::uint64_t, kSafetyStages> stages{};  ///< ticks in which each changed the force
 
   std::string Text() const;     ///< figures, each beside what was promised

@@ -316,6 +316,18 @@ TEST(Felt, SaysNothingOfAHandThatRests) {
   EXPECT_NE(felt.Verdict().find("too little"), std::string::npos);
 }
 
+/// The legs spin between their ball joints, and the hand does not feel that.
+TEST(Felt, SaysThatAFreedomIsOutOfReach) {
+  SessionOptions options;
+  options.example = "stewart-gough-sps";
+  const FeltReport felt = FeltIn(Session(options).recording);
+  EXPECT_TRUE(felt.unreached);
+  EXPECT_FALSE(felt.inertia.known);
+  EXPECT_NE(felt.Text().find("freedoms that the hand does not reach"), std::string::npos);
+  EXPECT_NE(felt.Verdict().find("does not reach every freedom"), std::string::npos);
+  EXPECT_FALSE(FeltIn(OfTheSliderCrank().recording).unreached);
+}
+
 TEST(Felt, CountsWhatWasWithheldAndWhy) {
   Recording recording = OfTheSliderCrank().recording;
   for (int k = 1000; k < 1300; ++k) recording.ticks[k].off = ForceOff::kDeadMan;
