@@ -51,6 +51,7 @@ double FastestDecay(double time, const VectorXd& y, EquationsOfMotion* equations
 /// Looks, ever more seldom, whether what decays fastest keeps the steps of a run short.
 class StiffnessWatch {
  public:
+  /// Of a run of this simulation.
   explicit StiffnessWatch(const Simulation& simulation);
 
   /// The run begins at a time [s].
