@@ -20,14 +20,17 @@ template <typename Row>
 TimedRows<Row> WithCyclesAround(const TimedRows<Row>& cycle) {
   constexpr size_t kFar = 60;  // rows; 2^-60 is below rounding
   const size_t count = cycle.times.size() - 1;
-  const size_t before = (kFar + count - 1) / count, all = 2 * before + 1;
+  const auto before = static_cast<int>((kFar + count - 1) / count);
   const double period = cycle.times.back() - cycle.times.front();
   TimedRows<Row> table;
-  for (size_t i = 0; i <= all * count; ++i) {
-    const double turn = static_cast<double>(i / count) - static_cast<double>(before);
-    table.times.push_back(cycle.times[i % count] + turn * period);
-    table.rows.push_back(cycle.rows[i % count]);
+  const auto add = [&](size_t row, int turn) {
+    table.times.push_back(cycle.times[row] + turn * period);
+    table.rows.push_back(cycle.rows[row]);
+  };
+  for (int turn = -before; turn <= before; ++turn) {
+    for (size_t row = 0; row < count; ++row) add(row, turn);
   }
+  add(0, before + 1);
   return table;
 }
 

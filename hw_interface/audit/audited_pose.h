@@ -13,8 +13,8 @@ namespace vmech {
 struct AuditedPose {
   explicit AuditedPose(const KinematicTree& tree);  ///< takes the numbers of the tree
 
-  /// At q, with the velocities v of its inertia.
-  void Set(const KinematicTree& tree, const VectorXd& q, const VectorXd& v);
+  /// At the coordinates `at`, with the velocities v of its inertia.
+  void Set(const KinematicTree& tree, const VectorXd& at, const VectorXd& v);
   /// After Set, in the paper's way: with the rate of v, and `idle`, motions that nothing drives
   /// [nv, any]; `actual`: the velocities of its dampers.
   void Accelerate(const KinematicTree& tree, const PassiveJoints& passive, const VectorXd& actual,
