@@ -130,8 +130,7 @@ void FindModesOf(SmallMotions* motions, Modes* modes) {
   if (c.is_damped_off) {
     modes->warnings.push_back(
         "dampers act along motions without inertia, whose decay is not among the modes, nor what "
-        "it "
-        "does to the others; give the links that take part in them mass and inertia");
+        "it does to the others; give the links that take part in them mass and inertia");
   }
   if (c.M.rows() == 0) {
     modes->stability = JudgeBySprings(modes->stiffness);

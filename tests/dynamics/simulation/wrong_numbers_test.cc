@@ -270,26 +270,28 @@ bool AnythingIsCertain(const SimulationResult& result) {
   return false;
 }
 
+/// One contact is held, lets go at a time [s], and leaves loads certain.
+void ExpectHeldUntil(double time, const Simulation& simulation, SimulationEvent::Kind held,
+                     SimulationEvent::Kind let_go) {
+  const SimulationResult result = Simulate(simulation);
+  ASSERT_EQ(result.events.size(), 2U);
+  EXPECT_EQ(result.events[0].kind, held);
+  EXPECT_EQ(result.events[1].kind, let_go);
+  EXPECT_NEAR(result.events[1].time, time, 1e-9);
+  EXPECT_TRUE(AnythingIsCertain(result));
+}
+
 TEST(Certainty, OneContactThatSticksAndSlipsLeavesLoadsCertain) {
   Simulation simulation = MovedFourBar({{0, 1}, {0, 3}, 0}, {0, 1});
   simulation.mechanism.joints[0].passive[0].coulomb = 1.5;
-  const SimulationResult result = Simulate(simulation);
-  ASSERT_EQ(result.events.size(), 2U);
-  EXPECT_EQ(result.events[0].kind, SimulationEvent::Kind::kSticks);
-  EXPECT_EQ(result.events[1].kind, SimulationEvent::Kind::kSlips);
-  EXPECT_NEAR(result.events[1].time, 0.5, 1e-9);
-  EXPECT_TRUE(AnythingIsCertain(result));
+  ExpectHeldUntil(0.5, simulation, SimulationEvent::Kind::kSticks, SimulationEvent::Kind::kSlips);
 }
 
 TEST(Certainty, ALimitThatClosesAndOpensLeavesLoadsCertain) {
   Simulation simulation = MovedFourBar({{0, 2}, {3, -3}, 0}, {0, 1.5});
   simulation.mechanism.joints[0].upper = {1.3};
-  const SimulationResult result = Simulate(simulation);
-  ASSERT_EQ(result.events.size(), 2U);
-  EXPECT_EQ(result.events[0].kind, SimulationEvent::Kind::kLimitCloses);
-  EXPECT_EQ(result.events[1].kind, SimulationEvent::Kind::kLimitOpens);
-  EXPECT_NEAR(result.events[1].time, 1, 1e-9);
-  EXPECT_TRUE(AnythingIsCertain(result));
+  ExpectHeldUntil(1, simulation, SimulationEvent::Kind::kLimitCloses,
+                  SimulationEvent::Kind::kLimitOpens);
 }
 
 TEST(Certainty, TwoContactsThatStickInALoopLeaveNothingCertain) {
